@@ -95,7 +95,7 @@ def array_file_bytes(
     members |= arrays
     buffer = io.BytesIO()
     typed = {name: np.ascontiguousarray(each, kind.type_of(name)[0]) for name, each in members.items()}
-    np.savez(buffer, **typed)
+    np.savez(buffer, **typed)  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
@@ -141,7 +141,7 @@ def _array(archive: zipfile.ZipFile, name: str, wanted: ArrayType) -> AnyArray:
 
 
 def mesh_of(
-    header: Mapping[str, Any], arrays: Mapping[str, AnyArray], part_names: object, crease_angle: object
+    header: Mapping[str, Any], arrays: Mapping[str, AnyArray], part_names: object, crease_angle: Any
 ) -> Mesh:
     """The mesh of the header and the arrays of a file. Raises InputError."""
     scalars = []
@@ -160,5 +160,5 @@ def mesh_of(
         vectors = np.asfortranarray(arrays["own_normal_0"])
         own = NodeNormals(read_only(vectors), read_only(np.asfortranarray(numbers, np.intp)))
     names = tuple(part_names) if isinstance(part_names, (list, tuple)) else ()
-    tables = (arrays[name] for name in MESH_TYPES)
-    return Mesh(*tables, names, crease_angle, tuple(scalars), own)  # type: ignore[arg-type]
+    coordinates, node_numbers, part_numbers = (arrays[name] for name in MESH_TYPES)
+    return Mesh(coordinates, node_numbers, part_numbers, names, crease_angle, tuple(scalars), own)

@@ -135,7 +135,7 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
     surface_of = np.zeros(1 + len(scene.parts), np.uint8)
     for part in scene.mesh.parts_in_use:
         surface_of[1 + part] = scene.surface_number_of_part[part]
-    wrong = (parts < 0) | (parts >= len(surface_of)) | ((parts > 0) & (surfaces == 0))
+    wrong = (parts < 0) | (parts >= len(surface_of))
     wrong |= surface_of.take(parts, mode="clip") != surfaces
     if wrong.any():
         line, element = np.argwhere(wrong)[0].tolist()

@@ -245,7 +245,9 @@ def _table(
     if np.issubdtype(dtype, np.integer) and table.dtype.kind not in "iu":
         raise InputError(f"{file}: its numbers must be whole, not {table.dtype}; convert them")
     is_copied = are_triangles or table.dtype != dtype or not table.flags.f_contiguous
-    size = rows * (BYTES_OF_ROW + is_copied * math.prod(shape[1:]) * np.dtype(dtype).itemsize)
+    size = rows * (
+        BYTES_OF_ROW + is_copied * math.prod(size or 1 for size in shape[1:]) * np.dtype(dtype).itemsize
+    )
     advice = "divide the mesh, or write it with `autocolor convert`"
     require_memory(size, f"{file}: to render {rows:,} rows", advice)
     if is_copied:
