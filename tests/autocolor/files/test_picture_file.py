@@ -17,16 +17,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import (
-    InputError,
-    Scene,
-    UsageError,
-    read_picture,
-    render,
-    write_picture,
-)
+from autocolor import InputError, Scene, UsageError, read_picture, render, write_picture
 from autocolor.checks import shown
-from autocolor.errors import OutputError
 from autocolor.files.picture_file import SavedPicture, plain_scene
 from autocolor.images import display_image
 from autocolor.lighting.picture import Picture
@@ -142,17 +134,6 @@ def test_numpy_can_open_a_picture_file() -> None:
         assert (arrays["relative_intensity"] * np.float32(scale) == picture.intensity).all()
         assert (arrays["part_number"] == picture.part_number).all()
         assert (arrays["coordinates"] == scene.mesh.coordinates).all()
-
-
-def test_an_existing_file_is_kept_unless_it_may_be_overwritten(tmp_path: Path) -> None:
-    path, (picture, scene) = tmp_path / "wall.npz", read(content(lit_wall))
-    path.write_bytes(b"mine")
-    with pytest.raises(OutputError):
-        write_picture(path, scene, picture)
-    guarded: list[bytes] = []
-    guard = lambda _: lambda: guarded.append(path.read_bytes())  # noqa: E731
-    write_picture(path, scene, picture, overwrite=True, guard=guard)
-    assert (guarded, path.read_bytes()) == ([b"mine"], content(lit_wall))
 
 
 ALONE = "a picture and its scene must both have a scalar or neither, not one alone; render the scene"

@@ -215,12 +215,10 @@ def described(text: bytes) -> bytes:
 @pytest.mark.parametrize(
     "data",
     [
-        *(saved(np.array(value)) for value in (["a"], [1 + 2j], 3.0, [True], [[[1.0]]])),
-        saved(np.array([{}], object)),
+        *(saved(np.array(value)) for value in (["a"], [1 + 2j], 3.0, [[[1.0]]])),
         *(b"", b"\x93NUMPY\1\0\xff\xff", b"\x80\4N."),
-        *(described(HEADER.replace(b"(3,)", shape)) for shape in (b"(-3,)", b"(1.5,)", b"3")),
-        described(HEADER.replace(b"3,", b"9" * 19 + b",")),
-        *(described(text) for text in (b"__import__('os')", b"(" * 900, b"{[]: 1}")),
+        *(described(HEADER.replace(b"3,", size)) for size in (b"-3,", b"1.5,", b"9" * 19 + b",")),
+        *(described(text) for text in (b"__import__('os')", b"(" * 900)),
         saved(np.zeros((10, 3)))[:-1],
     ],
     ids=repr,
