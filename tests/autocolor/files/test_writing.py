@@ -41,12 +41,14 @@ def test_what_is_no_place_for_a_file_is_refused_at_once(tmp_path: Path, name: st
 
 
 @pytest.mark.parametrize(("number", "kind"), [(errno.ENOSPC, WriteError), (errno.EROFS, OutputError)])
-def test_a_failure_of_the_disk_is_an_error_of_this_package(
+def test_after_a_failure_the_old_file_is_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, kind: type[AutocolorError]
 ) -> None:
+    (tmp_path / "a.npz").write_bytes(b"old")
     monkeypatch.setattr(os, "fsync", Mock(side_effect=OSError(number, os.strerror(number))))
     with pytest.raises(kind, match=os.strerror(number).lower()):
         write_atomically(tmp_path / "a.npz", b"new", overwrite=True)
+    assert (tmp_path / "a.npz").read_bytes() == b"old"
 
 
 # Folders of tables.
