@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator, Mapping
-from itertools import chain
 from pathlib import Path
 
 from autocolor.errors import InputError
@@ -41,12 +40,12 @@ def stamp_of(path: Path) -> str | None:
 def numbers_of(path: Path) -> tuple[int, ...] | None:
     """Numbers that differ after a file was changed; None if it is missing. The file is not opened."""
     try:
-        found = [os.stat(each) for each in (path, *_logs(path))]
+        status, *logs = [os.stat(each) for each in (path, *_logs(path))]
     except (OSError, ValueError):
         return None
     # A program may set the time of a change, but not the time when the status changed.
-    numbers = [(each.st_ino, each.st_mtime_ns, each.st_ctime_ns, each.st_size) for each in found]
-    return tuple(chain.from_iterable(numbers))
+    numbers = status.st_ino, status.st_mtime_ns, status.st_ctime_ns, status.st_size
+    return (*numbers, *(number for log in logs for number in (log.st_mtime_ns, log.st_size)))
 
 
 def look_at(path: Path) -> tuple[int, ...] | None:
