@@ -133,25 +133,24 @@ def lines_of(table: RowTable) -> Iterator[str]:
     """The reference of a table, a line a column; the three columns of a vector share one."""
     yield f"\n### `{table.name}`\n\n| column | type | what it is | value | default |\n|---|---|---|---|---|\n"
     for column in table.columns:
-        if not column.component:
+        if column.path[-1] not in (1, 2):
             default = "" if column.default is None else f"`{shown_default(table, column)}`"
             told = default or ("NULL" if column.may_be_null else "")
-            rule = column.kind.rule().removeprefix("must be ")
-            yield f"| `{shown_name(column)}` | {column.type} | {column.help} | {rule} | {told} |\n".replace(
-                "|| ", "| "
-            )
+            rule = column.column.kind.rule().removeprefix("must be ")
+            name, text = shown_name(column), column.column.help
+            yield f"| `{name}` | {column.type} | {text} | {rule} | {told} |\n".replace("|| ", "| ")
 
 
 def shown_name(column: SqlColumn) -> str:
     """The name of a column; of a vector, with all its axes."""
-    return column.name if column.component is None else f"{column.name[:-1]}x`, `..._y`, `..._z"
+    return f"{column.name[:-1]}x`, `..._y`, `..._z" if column.path[-1] == 0 else column.name
 
 
 def shown_default(table: RowTable, column: SqlColumn) -> str:
     """The default of a column; of a vector, those of all its axes."""
-    if column.component is None:
+    if column.path[-1] != 0:
         return literal(column.default)
-    return ", ".join(literal(each.default) for each in table.columns if each.path == column.path)
+    return ", ".join(literal(each.default) for each in table.columns if each.path[:-1] == column.path[:-1])
 
 
 if __name__ == "__main__":

@@ -51,7 +51,6 @@ REFUSALS = """\
 UPDATE polygons SET node3 = 40 WHERE polygon = 2
 DELETE FROM nodes WHERE node = 4
   polygons, row 1: node 4 is not in the node table; correct it
-  polygons, row 2: node 40 is not in the node table; correct it
 
 UPDATE polygons SET part = 'hod' WHERE polygon = 1
   polygons, row 1: part must be in the part table, not 'hod'; did you mean 'hood'?
@@ -62,34 +61,27 @@ UPDATE parts SET surface = 'glas'
   part 'roof': surface 'glas' is not in the surface table; did you mean 'glass'?
 
 LOOSE nodes
-UPDATE nodes SET x = 'a', y = NULL, z = 9e999 WHERE node = 2
+UPDATE nodes SET x = 'a', y = NULL WHERE node = 2
+  nodes, row 2: x must be a number of at most 1e+30 in size, not 'a'; correct it
+
+UPDATE nodes SET z = 9e999 WHERE node = 2
+  nodes, row 2: z must be a number of at most 1e+30 in size, not inf; correct it
+
+LOOSE nodes
 UPDATE nodes SET node = 1.5 WHERE node = 4
-  nodes, row 2: x must be a number of at most 1e30 in size, not 'a'; correct it
-  nodes, row 2: y must be a number of at most 1e30 in size, not missing; correct it
-  nodes, row 2: z must be a number of at most 1e30 in size, not inf; correct it
   nodes, row 1.5: node must be a whole number, not 1.5; correct it
 
-DROP TABLE polygon_scalars
-CREATE TABLE polygon_scalars (scalar TEXT, polygon REAL, value TEXT) STRICT
-INSERT INTO polygon_scalars VALUES ('area', 1.5, '2')
-  polygon_scalars, row 1.5: polygon must be the number of a polygon, not 1.5; correct it
-  polygon_scalars, row 1.5: value must be a number of at most 1e30 in size, not '2'; correct it
+LOOSE node_scalars
+UPDATE node_scalars SET node = 2.5 WHERE node = 2
+  node_scalars, row 2.5: node must be a whole number, not 2.5; correct it
 
 LOOSE nodes
 UPDATE nodes SET node = 3 WHERE node = 2
   nodes: rows must have different numbers, and 3 is repeated; number them anew
 
 LOOSE polygons
-UPDATE polygons SET node2 = NULL, node4 = 'a' WHERE polygon = 1
-UPDATE polygons SET polygon = 1.5 WHERE polygon = 2
-  polygons, row 1: node2 must be a node number, not missing; correct it
-  polygons, row 1: node4 must be a node number, or NULL for a triangle, not 'a'; correct it
-  polygons, row 1.5: polygon must be a whole number, not 1.5; correct it
-
-LOOSE node_scalars
-UPDATE node_scalars SET node = 2.5, value = 'hot' WHERE node = 2
-  node_scalars, row 2.5: node must be the number of a node, not 2.5; correct it
-  node_scalars, row 2.5: value must be a number of at most 1e30 in size, not 'hot'; correct it
+UPDATE polygons SET node2 = NULL WHERE polygon = 1
+  polygons, row 1: node2 must be a whole number, not missing; correct it
 
 LOOSE polygons
 UPDATE polygons SET part = x'07' WHERE polygon = 1
@@ -132,9 +124,6 @@ CREATE TABLE mesh_scalars (name, 'of')
 INSERT INTO mesh_scalars VALUES ('stress', 'edge')
   scalar 'stress': it must be of 'node' or 'polygon', not 'edge'; choose one
 
-PRAGMA user_version = 2
-  the version of a store must be at most 1, not 2; read it with a newer autocolor
-
 ALTER TABLE polygons RENAME COLUMN node3 TO node_3
   polygons must have the columns polygon, node1, node2, node3 and node4; add node3; did you mean 'node_3'?
 
@@ -149,7 +138,7 @@ CREATE TABLE mesh (number, crease_angle AS (hex(zeroblob(1000000))))
 rename it
 
 UPDATE scene SET name = hex(zeroblob(2000000))
-  a value must have at most 1,048,576 bytes, not more; shorten it
+  a value must have at most 131,072 bytes, not more; shorten it
 """
 """Changes of the small store, and below each the problems that are then found in it, all in one report."""
 
@@ -203,15 +192,6 @@ def test_additions_of_others_stay_and_none_is_run_when_a_store_is_saved_over(tmp
             ("ALTER TABLE lights RENAME TO other", "CREATE VIEW lights AS SELECT * FROM other"),
             "use DROP VIEW to delete view lights",
         ),
-        # A trigger that hides would leave rows out.
-        (
-            (
-                "CREATE TRIGGER less BEFORE INSERT ON parts BEGIN SELECT RAISE(IGNORE); END",
-                "PRAGMA writable_schema = ON",
-                "UPDATE sqlite_master SET sql = 'CREATE /**/' || substr(sql, 8) WHERE name = 'less'",
-            ),
-            "not authorized",
-        ),
     ],
 )
 def test_an_addition_that_does_not_fit_keeps_the_store_as_it_is(
@@ -246,7 +226,7 @@ def test_rows_are_read_from_tables_and_not_from_indexes_that_are_out_of_date(tmp
     run(path, f"CREATE TABLE saved AS SELECT * {ours}", "PRAGMA writable_schema = ON", f"DELETE {ours}")
     run(path, "DELETE FROM polygons WHERE polygon = 2", "DELETE FROM polygon_scalars WHERE polygon = 2")
     run(path, "PRAGMA writable_schema = ON", "INSERT INTO sqlite_master SELECT * FROM saved")
-    assert run(path, "SELECT count(*) FROM polygons INDEXED BY polygons_node4") == [(2,)]
+    assert run(path, "SELECT count(*) FROM polygons INDEXED BY polygons_part") == [(2,)]
     assert read_store(path).scene.mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 

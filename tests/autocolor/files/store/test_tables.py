@@ -12,7 +12,7 @@ import autocolor
 from autocolor import InputError, MissingInputError, UsageError, WriteError, open_tables
 from autocolor.files.opening import read_scene
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.store.tables import LONGEST_COMPUTED, Tables, tables_of
+from autocolor.files.store.tables import Tables, tables_of
 from tests.autocolor.files.store.stores import contents, is_equal, run, small_scene, small_store
 from tests.tables import refused
 
@@ -33,7 +33,7 @@ def test_rows_are_selected_joined_and_given_by_name(tables: Tables) -> None:
     assert tables.columns("nodes") == ["node", "x", "y", "z"]
     assert {"scene", "nodes", "polygons", "parts", "view"} <= set(tables.names)
     assert is_equal(tables.scene(), small_scene())
-    assert tables.answer('SELECT 1 AS a, 2 AS "a 2", 3 AS a').columns == ("a", "a 2", "a 3")
+    assert tables.answer('SELECT 1 AS a, 2 AS "a 2", 3 AS a')[0] == ("a", "a 2", "a 3")
 
 
 def test_a_mesh_file_is_opened_by_its_up_axis_and_scale_which_a_store_gives_itself(tmp_path: Path) -> None:
@@ -209,11 +209,3 @@ def test_rows_come_a_few_at_a_time_as_they_are_asked_for(tables: Tables) -> None
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 20_000_000
-
-
-def test_values_that_a_statement_computes_are_short_enough_to_be_searched_at_once(tables: Tables) -> None:
-    query = "SELECT length(replace(hex(zeroblob(?)), '0', 'a')) AS n"
-    half = LONGEST_COMPUTED // 2
-    assert tables.select(query, [half - 500]) == [{"n": LONGEST_COMPUTED - 1000}]
-    with pytest.raises(UsageError, match="string or blob too big"):
-        tables.select(query, [half + 1])
