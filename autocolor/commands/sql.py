@@ -143,7 +143,7 @@ def lines_of(columns: tuple[str, ...], rows: Iterator[tuple[Value, ...]], form: 
     elif columns:
         first = list(islice(rows, MEASURED))
         widths = [max(len(_cell(value)) for value in column) for column in zip(columns, *first, strict=True)]
-        for row in chain([columns, ["-" * width for width in widths]], first, rows):
+        for row in chain([columns, tuple("-" * width for width in widths)], first, rows):
             sides = [">" if isinstance(value, (int, float)) else "<" for value in row]
             cells = zip(map(_cell, row), sides, widths, strict=True)
             yield "  ".join(f"{text:{side}{width}}" for text, side, width in cells).rstrip()

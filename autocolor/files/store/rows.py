@@ -163,10 +163,11 @@ def _numbers_in(
     def refuse_wrong() -> None:
         for row in connection.execute(query, values):
             for name, value in zip(columns, row, strict=True):
-                types, rule = (int, float), f"a number of at most {LARGEST_COORDINATE:g} in size"
+                kind: Any = int | float
+                rule = f"a number of at most {LARGEST_COORDINATE:g} in size"
                 if name not in REAL:
-                    types, rule = (int,), "a whole number"
-                if not isinstance(value, types) or abs(value) > LARGEST_COORDINATE:
+                    kind, rule = int, "a whole number"
+                if not isinstance(value, kind) or abs(value) > LARGEST_COORDINATE:
                     given = "missing" if value is None else shown(value)
                     place = f"{table}, row {shown(row[0])}"
                     raise InputError(f"{place}: {name} must be {rule}, not {given}; correct it")

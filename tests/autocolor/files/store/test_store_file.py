@@ -71,10 +71,6 @@ LOOSE nodes
 UPDATE nodes SET node = 1.5 WHERE node = 4
   nodes, row 1.5: node must be a whole number, not 1.5; correct it
 
-LOOSE node_scalars
-UPDATE node_scalars SET node = 2.5 WHERE node = 2
-  node_scalars, row 2.5: node must be a whole number, not 2.5; correct it
-
 LOOSE nodes
 UPDATE nodes SET node = 3 WHERE node = 2
   nodes: rows must have different numbers, and 3 is repeated; number them anew
@@ -126,11 +122,6 @@ INSERT INTO mesh_scalars VALUES ('stress', 'edge')
 
 ALTER TABLE polygons RENAME COLUMN node3 TO node_3
   polygons must have the columns polygon, node1, node2, node3 and node4; add node3; did you mean 'node_3'?
-
-ALTER TABLE lights RENAME TO other
-CREATE VIEW lights AS SELECT * FROM other
-  lights must be a table of plain columns, and no view, virtual table or computed column; make it one, or \
-rename it
 
 DROP TABLE mesh
 CREATE TABLE mesh (number, crease_angle AS (hex(zeroblob(1000000))))
