@@ -82,9 +82,9 @@ readonly database`) until it opens the store again.
 
 Tables, views, indexes and triggers of other programs stay, and none of them is run: the tables below are made
 anew, and then the indexes and triggers that others gave them. If one does not fit the rows of the new scene,
-the store is left as it is. `--write` refuses a store with triggers, because its
-statement would run them. A studio that shows a store, or a scene file, shows the changes of other programs as
-one step to undo; with unsaved edits it asks.
+the store is left as it is. `--write` refuses a store with triggers, because its statement would run them. A
+studio that shows a store, or a scene file, shows the changes of other programs as one step to undo; with
+unsaved edits it asks.
 
 What another program has written to a `-wal` file is read with the store. Before the store is replaced,
 SQLite moves the log into it, and the store leaves WAL mode. While a program has the store open in WAL mode,

@@ -189,8 +189,9 @@ def files_to_play(path: Path) -> list[str]:
 READING_PRAGMAS: Final = ("index_list", "table_info", "table_list", "table_xinfo")
 """The pragmas that only read, whatever their argument."""
 
-UNSAFE_FUNCTIONS: Final = {"load_extension", "fts3_tokenizer", "match", "matchinfo", "snippet", "offsets"} | {
-    *("optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode")
+UNSAFE_FUNCTIONS: Final = {
+    *("load_extension", "fts3_tokenizer", "match", "matchinfo", "snippet", "offsets", "optimize", "bm25"),
+    *("highlight", "fts5", "rtreecheck", "rtreedepth", "rtreenode"),
 }
 """The functions that run other code, or read the inner tables of full-text and R-tree indexes, which may be
 damaged."""
@@ -198,10 +199,8 @@ damaged."""
 READS: Final = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
 CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
 
-Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int]
 
-
-def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Authorizer:
+def authorizer(may_change: bool, changed: set[str]) -> Callable[..., int]:
     """The permissions of a statement: it may read, compute and, with `may_change`, change rows itself.
 
     A change by a trigger of the file is refused. The tables that the statement changes, or would change, are
@@ -212,7 +211,7 @@ def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Aut
         action: int, first: str | None, second: str | None, _: str | None, inner: str | None
     ) -> int:
         name = str(second if action == sqlite3.SQLITE_FUNCTION else first).lower()
-        if action in CHANGES and changed is not None:
+        if action in CHANGES:
             changed.add(name)
         is_allowed = (
             action in READS
@@ -227,9 +226,13 @@ def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Aut
 
 @contextmanager
 def limited(
-    connection: sqlite3.Connection, permission: Authorizer, seconds: float, late: AutocolorError
-) -> Iterator[None]:
-    """Permissions and time of the statements in the body. Raises `late` if they take longer."""
+    connection: sqlite3.Connection, seconds: float, late: AutocolorError, may_change: bool = False
+) -> Iterator[set[str]]:
+    """Permissions and time of the statements in the body. Raises `late` if they take longer.
+
+    The set has the tables that they change, or would change.
+    """
+    changed: set[str] = set()
     until = time.monotonic() + seconds
     is_late = False
 
@@ -238,11 +241,11 @@ def limited(
         is_late = time.monotonic() > until
         return int(is_late)
 
-    connection.set_authorizer(permission)
+    connection.set_authorizer(authorizer(may_change, changed))
     # A step of SQLite's machine can be a slow function.
     connection.set_progress_handler(look, 1000)
     try:
-        yield
+        yield changed
     except sqlite3.OperationalError as error:
         if is_late:
             raise late from None

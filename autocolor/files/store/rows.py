@@ -1,8 +1,8 @@
 """The rows of a store as a scene, and a scene as rows.
 
-Measured, for a million nodes and a million quads: `np.fromiter` of whole rows takes 1.7 s, `fetchall` and
-`np.array` take 3.6 s, chunks of `fetchmany` 3 s. To look at all types takes half as long as
-reading, so only tables of another definition than ours are looked at.
+Measured, for a million nodes and a million quads: `np.fromiter` of whole rows takes half as long as
+`fetchall` and `np.array`. To look at all types takes half as long as reading, so only tables of another
+definition than ours are looked at.
 """
 
 from __future__ import annotations

@@ -13,13 +13,11 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.checks import printable
-from autocolor.errors import InputError, UsageError, WriteError
-from autocolor.files.paths import STORE_SUFFIXES
+from autocolor.errors import InputError, WriteError
 from autocolor.files.scene_report import SceneReport
 from autocolor.files.store.connections import (
     DAMAGE_ERRORS,
     SQL_ERRORS,
-    authorizer,
     closed_on_error,
     files_to_play,
     in_memory,
@@ -59,7 +57,7 @@ def report_in(connection: sqlite3.Connection, file: str, surfaces: SurfaceSource
     """The scene in the tables of a connection. Raises InputError; messages begin with `file`."""
     late = InputError(f"a store must be read within {READING_SECONDS:g} seconds, not longer; leave rows out")
     try:
-        with limited(connection, authorizer(), READING_SECONDS, late):
+        with limited(connection, READING_SECONDS, late):
             return report_of(connection, stored_tables(connection), Path(file).stem or "scene", surfaces)
     except SQL_ERRORS as error:
         raise InputError(f"{file}: {sentence_of(error)}") from None
@@ -100,11 +98,6 @@ def write_store(
     for a name that is not UTF-8. Nothing is changed then.
     """
     path = Path(path)
-    if path.suffix.lower() not in STORE_SUFFIXES:
-        raise UsageError(
-            f"a store must be written to a file that ends in {' or '.join(STORE_SUFFIXES)}, not to {path};"
-            " rename it"
-        )
     refuse_output(path, overwrite=overwrite)
     check = guard(path)
     with timed(LOG, f"wrote {path.name}"):

@@ -17,7 +17,6 @@ from autocolor.files.meshes.repair import different
 from autocolor.files.opening import FILES, STORE, PathLike, read_scene_with_report
 from autocolor.files.store.connections import (
     SQL_ERRORS,
-    authorizer,
     closed_on_error,
     copied,
     limited,
@@ -214,28 +213,22 @@ def _statement(connection: sqlite3.Connection, seconds: float, may_change: bool 
 
     Raises ChangeError if it would change tables and may not.
     """
-    changed: set[str] = set()
     late = UsageError(
         f"a statement must end within {seconds:g} seconds, not run on; narrow it with WHERE or LIMIT, or"
         " allow more with --seconds"
     )
     try:
-        with limited(connection, authorizer(may_change, changed), seconds, late):
+        with limited(connection, seconds, late, may_change) as changed:
             yield
     except SQL_ERRORS as error:
-        text = printable(str(error))
-        if primary_code(error) != sqlite3.SQLITE_AUTH:
-            raise UsageError(
-                f"a statement must be one that SQLite can run, and this one is not ({text}); correct it"
-            ) from None
-        if changed and not may_change:
+        if primary_code(error) == sqlite3.SQLITE_AUTH and changed and not may_change:
             raise ChangeError(
                 f"a statement must only read the tables, and this one changes {', '.join(sorted(changed))};"
                 " allow changes with --write (tables.change in Python), or write a SELECT"
             ) from None
         raise UsageError(
-            "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another"
-            f" ({text}); change the tables themselves with a tool of SQLite"
+            "a statement must be one SELECT or, with --write, one INSERT, UPDATE or DELETE that SQLite can"
+            f" run, and this one is not ({printable(str(error))}); correct it"
         ) from None
 
 

@@ -187,12 +187,11 @@ def test_a_program_that_has_the_store_is_waited_for_and_then_refused(
 
 def test_nobody_else_changes_a_store_while_it_is_changed(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    with closing(sqlite3.connect(path, isolation_level=None, timeout=0)) as other:
-        with replacing(path, lambda: None) as (copy, save), closing(copy):
-            assert other.execute(BRIGHTNESS).fetchall() == [(1.0,)]
-            with pytest.raises(sqlite3.OperationalError, match="database is locked"):
-                other.execute(BRIGHTER)
-            save(store_bytes(small_scene().with_light("key", intensity=9.0)))
+    with replacing(path, lambda: None) as (copy, save), closing(copy):
+        assert brightness(path) == 1.0
+        with pytest.raises(sqlite3.OperationalError, match="database is locked"):
+            run(path, "PRAGMA busy_timeout = 0", BRIGHTER)
+        save(store_bytes(small_scene().with_light("key", intensity=9.0)))
     assert brightness(path) == 9.0
 
 
@@ -254,7 +253,7 @@ def test_a_statement_reads_or_also_changes_rows_and_may_do_nothing_else(may_chan
     def is_allowed(statement: str) -> bool:
         with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
             connection.executescript(GUARDED)
-            connection.set_authorizer(authorizer(may_change))
+            connection.set_authorizer(authorizer(may_change, set()))
             try:
                 connection.execute(statement).fetchall()
             except sqlite3.DatabaseError:
@@ -263,7 +262,7 @@ def test_a_statement_reads_or_also_changes_rows_and_may_do_nothing_else(may_chan
 
     allowed = [each for each in (*REFUSED.splitlines(), *CHANGES, *READS) if is_allowed(each)]
     assert allowed == [*(CHANGES if may_change else ()), *READS]
-    ask = authorizer(may_change)
+    ask = authorizer(may_change, set())
     assert {ask(unknown, None, None, None, None) for unknown in (0, 100, -1)} == {sqlite3.SQLITE_DENY}
     for function in UNSAFE_FUNCTIONS:
         assert ask(sqlite3.SQLITE_FUNCTION, None, function.upper(), None, None) == sqlite3.SQLITE_DENY
