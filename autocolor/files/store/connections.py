@@ -98,8 +98,8 @@ def loaded(path: Path) -> sqlite3.Connection:
         return copied(file)
 
 
-def _opened(path: Path) -> sqlite3.Connection:
-    """A connection to the store at a path.
+def _opened(path: Path, is_written: bool = False) -> sqlite3.Connection:
+    """A connection to the store at a path, which lets it be written if SQLite must.
 
     Raises InputError if the file is not regular, too large, or no store, or if SQLite would delete another
     file (see `files_to_play`); MissingInputError.
@@ -112,8 +112,9 @@ def _opened(path: Path) -> sqlite3.Connection:
             f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
             " again with `autocolor convert`"
         )
-    files_to_play(path)
-    return _connected(f"{Path(os.path.realpath(path)).as_uri()}?mode=rw")
+    # A connection that could write would move a log into the store when it is closed.
+    mode = "ro" if "-wal" in files_to_play(path) and not is_written else "rw"
+    return _connected(f"{Path(os.path.realpath(path)).as_uri()}?mode={mode}")
 
 
 @contextmanager
@@ -134,7 +135,7 @@ def replacing(
             f"{path.name}: a store must let itself be written to be changed, and is write-protected; change"
             " its permissions, or write to another file"
         )
-    with refusals(path.name, is_written=True), closing(_opened(path)) as file:
+    with refusals(path.name, is_written=True), closing(_opened(path, is_written=True)) as file:
         file.execute("BEGIN IMMEDIATE")
         check()
         if file.execute("PRAGMA journal_mode").fetchone() == ("wal",):

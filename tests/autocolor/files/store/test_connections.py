@@ -126,8 +126,10 @@ def test_what_a_log_holds_is_read_and_is_not_played_into_the_next_store(tmp_path
         other.execute(BRIGHTER)
         for ending in ("", "-wal"):
             shutil.copy(f"{path}{ending}", f"{copy}{ending}")
+    before = copy.read_bytes()
     with closing(loaded(copy)) as connection:
         assert connection.execute(BRIGHTNESS).fetchone() == (2.0,)
+    assert copy.read_bytes() == before
     change(copy)
     assert brightness(copy) == 9.0
     assert run(copy, "PRAGMA journal_mode") == [("delete",)]
