@@ -325,7 +325,7 @@ def fault_of_sql(data: bytes) -> str:
         tables.seconds = 0.5
         for number, statement in enumerate(statements_in(io.TextIOWrapper(io.BytesIO(data), "utf-8"))):
             try:
-                lines = list(islice(lines_of(tables.answer(statement), (None, "json")[number % 2]), 200))
+                lines = list(islice(lines_of(*tables.answer(statement), (None, "json")[number % 2]), 200))
             except ChangeError:
                 tables.change(statement)
                 continue

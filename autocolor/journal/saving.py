@@ -11,6 +11,7 @@ files alone.
 from __future__ import annotations
 
 import os
+from contextlib import closing
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
@@ -158,9 +159,10 @@ def _backup_of(path: Path) -> Path:
     backup = free_path(path)
     if path.suffix.lower() in STORE_SUFFIXES:
         # SQLite is loaded for stores alone. The latest changes may be beside the store, in its log.
-        from autocolor.files.store.store_file import image_of
+        from autocolor.files.store.connections import loaded
 
-        data = image_of(path)
+        with closing(loaded(path)) as store:
+            data = store.serialize()
     else:
         data = path.read_bytes()
     write_atomically(backup, data, overwrite=False)

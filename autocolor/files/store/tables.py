@@ -7,7 +7,7 @@ import sqlite3
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import nearest, printable, shown
@@ -16,16 +16,13 @@ from autocolor.files.formats import recognized
 from autocolor.files.meshes.repair import different
 from autocolor.files.opening import FILES, STORE, PathLike, read_scene_with_report
 from autocolor.files.store.connections import (
-    DISK_ERRORS,
     SQL_ERRORS,
-    authorizer,
     closed_on_error,
     copied,
     limited,
     loaded,
     primary_code,
     replacing,
-    sentence_of,
 )
 from autocolor.files.store.schema import quoted
 from autocolor.files.store.store_file import report_in, store_of
@@ -34,22 +31,15 @@ from autocolor.scene.scene import Scene
 SECONDS: Final = 30.0
 """Limit: how long a statement may take, unless the user allows more."""
 
-LONGEST_COMPUTED: Final = 1 << 17
-"""Limit: in bytes, of a value that a statement reads or computes. SQLite cannot interrupt a function:
-searching a text of this length for one of half its length takes 0.2 s; at LONGEST_TEXT it would take 9 s."""
-
 ROWS_AT_ONCE: Final = 50
-"""Rows that are fetched at once. The rows of tables have at most LONGEST_COMPUTED bytes each."""
+"""Rows that are fetched at once. A row has at most LONGEST_TEXT bytes."""
 
 Parameters = Sequence[object] | Mapping[str, object]
 Value = None | int | float | str | bytes
 
 
-class Answer(NamedTuple):
-    """The different names of the columns of an answer, and its rows, which are fetched in chunks."""
-
-    columns: tuple[str, ...]
-    rows: Iterator[tuple[Value, ...]]
+Answer = tuple[tuple[str, ...], Iterator[tuple[Value, ...]]]
+"""The different names of the columns of an answer, and its rows, which are fetched in chunks."""
 
 
 class ChangeError(UsageError):
@@ -108,7 +98,7 @@ class Tables:
     def columns(self, table: str) -> list[str]:
         """The names of the columns of a table. Raises UsageError for an unknown table."""
         require_name(table, self.names, "table")
-        return list(self.answer(f"SELECT * FROM {quoted(table)}").columns)
+        return list(self.answer(f"SELECT * FROM {quoted(table)}")[0])
 
     def select(self, statement: str, parameters: Parameters = ()) -> list[dict[str, Value]]:
         """The rows that a SELECT gives, as dictionaries by the names of columns.
@@ -137,7 +127,7 @@ class Tables:
                     return
                 yield from fetched
 
-        return Answer(different([column[0] for column in cursor.description or ()]), rows())
+        return different([column[0] for column in cursor.description or ()]), rows()
 
     def update(self, table: str, key: str | int, /, **values: object) -> None:
         """Change columns of the row with this key, which is a name or a number.
@@ -219,39 +209,27 @@ class Tables:
 
 @contextmanager
 def _statement(connection: sqlite3.Connection, seconds: float, may_change: bool = False) -> Iterator[None]:
-    """Limits of permissions, time and the size of values for a statement, and its errors as UsageError.
+    """Limits of permissions and time for a statement, and its errors as UsageError.
 
-    Raises ChangeError if it would change tables and may not; WriteError if the disk, which holds large sorted
-    answers, is full or fails.
+    Raises ChangeError if it would change tables and may not.
     """
-    changed: set[str] = set()
     late = UsageError(
         f"a statement must end within {seconds:g} seconds, not run on; narrow it with WHERE or LIMIT, or"
         " allow more with --seconds"
     )
-    longest = connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_COMPUTED)
     try:
-        with limited(connection, authorizer(may_change, changed), seconds, late):
+        with limited(connection, seconds, late, may_change) as changed:
             yield
     except SQL_ERRORS as error:
-        text, code = printable(str(error)), primary_code(error)
-        if code in DISK_ERRORS:
-            raise WriteError(sentence_of(error)) from None
-        if code != sqlite3.SQLITE_AUTH:
-            raise UsageError(
-                f"a statement must be one that SQLite can run, and this one is not ({text}); correct it"
-            ) from None
-        if changed and not may_change:
+        if primary_code(error) == sqlite3.SQLITE_AUTH and changed and not may_change:
             raise ChangeError(
                 f"a statement must only read the tables, and this one changes {', '.join(sorted(changed))};"
                 " allow changes with --write (tables.change in Python), or write a SELECT"
             ) from None
         raise UsageError(
-            "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another"
-            f" ({text}); change the tables themselves with a tool of SQLite"
+            "a statement must be one SELECT or, with --write, one INSERT, UPDATE or DELETE that SQLite can"
+            f" run, and this one is not ({printable(str(error))}); correct it"
         ) from None
-    finally:
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
 
 
 def require_name(name: str, names: Sequence[str], noun: str) -> None:

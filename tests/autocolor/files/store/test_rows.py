@@ -5,8 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import InputError, read_scene
-from autocolor.budget import MEMORY
 from autocolor.files.store import rows as module
 from autocolor.files.store.store_file import read_store
 from tests.autocolor.files.store.stores import run, small_scene, small_store, tables_of
@@ -49,15 +47,6 @@ def test_a_store_that_lacks_columns_gives_their_defaults(tmp_path: Path) -> None
     run(path, "ALTER TABLE lights DROP COLUMN falloff")
     expected = small_scene().with_light("rim", flaps={"z": {"maximum": 0.5}})
     assert read_store(path).scene.lights == expected.lights
-
-
-def test_too_many_rows_are_refused_before_they_are_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(module, "BYTES_OF_ROW", MEMORY // 5 + 1)
-    with pytest.raises(InputError, match=r"nodes: to read 5 rows must take .*; leave rows out, or allow it"):
-        read_store(small_store(tmp_path))
-    assert len(read_scene(small_store(tmp_path, "allowed.sqlite"), limit=1.1).mesh.coordinates) == 5
 
 
 def test_values_belong_to_nodes_whose_numbers_a_double_does_not_hold(tmp_path: Path) -> None:
