@@ -127,7 +127,7 @@ def replacing(
     under this lock. What a log beside the store holds is moved into the store, because SQLite would play it
     into the next file of this name; the store then is no longer in WAL mode. After any error the copy is
     closed. Raises InputError, MissingInputError; OutputError if the place is write-protected, and WriteError
-    if another program goes on writing.
+    if another program goes on writing, or replaces the store meanwhile.
     """
     before = status_of(path)
     if not os.access(path, os.W_OK):
@@ -148,7 +148,14 @@ def replacing(
                 yield pair
             return
 
+        present = _numbers(path)
+
         def save(data: bytes) -> None:
+            if _numbers(path) != present:
+                raise WriteError(
+                    f"{path.name}: a store must stay as it is while it is changed, and another program"
+                    " replaced it; nothing was saved, so try again"
+                )
             if sys.platform == "win32":
                 # An open file cannot be replaced there.
                 file.close()
@@ -156,6 +163,12 @@ def replacing(
 
         with closed_on_error(copied(file)) as copy:
             yield copy, save
+
+
+def _numbers(path: Path) -> tuple[int, ...]:
+    """Numbers that differ after a file was changed or replaced."""
+    status = status_of(path)
+    return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
 
 
 JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")

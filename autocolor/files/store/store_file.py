@@ -38,6 +38,9 @@ ADDED: Final = ("CREATE INDEX ", "CREATE UNIQUE INDEX ", "CREATE TRIGGER ")
 
 LOG: Final = logger_of(__name__)
 
+VERSION: Final = 1
+"""The version of the tables, `PRAGMA user_version`."""
+
 READING_SECONDS: Final = 120.0
 """Limit: how long a store may be read; the largest takes half of that."""
 
@@ -57,6 +60,11 @@ def report_in(connection: sqlite3.Connection, file: str, surfaces: SurfaceSource
     """The scene in the tables of a connection. Raises InputError; messages begin with `file`."""
     late = InputError(f"a store must be read within {READING_SECONDS:g} seconds, not longer; leave rows out")
     try:
+        (version,) = connection.execute("PRAGMA user_version").fetchone()
+        if version > VERSION:
+            raise InputError(
+                f"the version of a store must be at most {VERSION}, not {version}; use a newer autocolor"
+            )
         with limited(connection, READING_SECONDS, late):
             return report_of(connection, stored_tables(connection), Path(file).stem or "scene", surfaces)
     except SQL_ERRORS as error:
@@ -157,6 +165,7 @@ def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
 
     Inserting the rows into tables that already have indexes takes longer.
     """
+    connection.execute(f"PRAGMA user_version = {VERSION}")
     for definition in DEFINITIONS.values():
         connection.execute(definition)
     try:

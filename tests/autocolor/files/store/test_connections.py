@@ -197,6 +197,16 @@ def test_nobody_else_changes_a_store_while_it_is_changed(tmp_path: Path) -> None
     assert brightness(path) == 9.0
 
 
+def test_a_store_that_is_replaced_while_it_is_changed_stays(tmp_path: Path) -> None:
+    path, other = small_store(tmp_path), small_store(tmp_path, "other.sqlite")
+    run(other, BRIGHTER)
+    with replacing(path, lambda: None) as (copy, save), closing(copy):
+        os.replace(other, path)
+        with pytest.raises(WriteError, match="another program replaced it; nothing was saved, so try again"):
+            save(store_bytes(small_scene()))
+    assert brightness(path) == 2.0
+
+
 def test_programs_that_change_a_store_at_the_same_time_lose_nothing(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     code = (

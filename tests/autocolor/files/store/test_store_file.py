@@ -220,12 +220,17 @@ def test_a_store_that_exists_is_not_overwritten_unless_asked(tmp_path: Path) -> 
     assert path.read_bytes() == before
 
 
-def test_a_file_without_nodes_or_that_is_not_there_is_refused(tmp_path: Path) -> None:
+def test_a_file_without_nodes_of_later_tables_or_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(MissingInputError):
         read_store(tmp_path / "none.sqlite")
     empty = tmp_path / "empty.sqlite"
     run(empty, "CREATE TABLE node (x)")
     with pytest.raises(InputError, match="must have the tables nodes and polygons; add nodes and polygons"):
+        read_store(empty)
+    run(empty, "PRAGMA user_version = 2")
+    with pytest.raises(
+        InputError, match="version of a store must be at most 1, not 2; use a newer"
+    ):
         read_store(empty)
 
 
