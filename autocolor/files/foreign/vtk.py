@@ -1,4 +1,4 @@
-"""Reading VTK files, legacy and XML, with VTK's own library, in the process of `foreign_worker`.
+"""Reading VTK files, legacy and XML, with VTK's own library, in the process of `worker`.
 
 Of polygonal data, the polygons and the triangles of strips are read; of grids, the polygons and the outer
 faces of volume cells. Quads stay quads. Of cells of higher order only the corners are read. Hidden and
@@ -24,9 +24,16 @@ from vtkmodules.vtkIOLegacy import vtkDataSetReader
 
 from autocolor.arrays import AnyArray, Floats, Indices, cross, dot, runs
 from autocolor.checks import listed, shown
-from autocolor.files.meshes.cells import CORNERS, CellSurface, Flats, Volumes, cell_surface, surface_sentences
+from autocolor.files.foreign.cells import (
+    CORNERS,
+    CellSurface,
+    Flats,
+    Volumes,
+    cell_surface,
+    surface_sentences,
+)
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, unreadable
 from autocolor.files.meshes.file_scalars import FileScalars
-from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, unreadable
 from autocolor.files.meshes.repair import RawPolygons, printable_name
 from autocolor.files.reading import HEAD, read_head, read_whole
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar

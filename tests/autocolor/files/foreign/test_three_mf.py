@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from autocolor.files.formats import read_mesh
-from tests.autocolor.files.meshes.conftest import CUBE, SIDES
+from tests.autocolor.files.foreign.conftest import CUBE, SIDES
 from tests.autocolor.files.refusals import refusal
 
 pytestmark = [pytest.mark.needs("lib3mf"), pytest.mark.usefixtures("shared")]

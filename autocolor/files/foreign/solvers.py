@@ -1,6 +1,6 @@
 """Abaqus, Nastran, Gmsh, Medit and UGRID.
 
-The texts of Abaqus and Nastran are read by `meshio_text`, the others by meshio. Of volume cells the outer
+The texts of Abaqus and Nastran are read by `solver_text`, the others by meshio. Of volume cells the outer
 surface is taken, of cells of higher order the corners; cells without faces are skipped and counted. Parts
 are the physical groups of Gmsh, the element sets of Abaqus, and the numbers by which the other formats tell
 cells apart; a cell in none is in the part named after the file.
@@ -22,9 +22,9 @@ import meshio
 import numpy as np
 
 from autocolor.arrays import Floats, Indices
-from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
-from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of, unreadable
-from autocolor.files.meshes.meshio_text import CORNERS_OF, Record, abaqus, nastran
+from autocolor.files.foreign.cells import CORNERS, Flats, Volumes, cell_surface
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, part_names_of, unreadable
+from autocolor.files.foreign.solver_text import CORNERS_OF, Record, abaqus, nastran
 from autocolor.files.meshes.repair import RawPolygons
 
 Block = tuple[str, Indices, list[str]]

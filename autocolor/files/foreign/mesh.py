@@ -1,7 +1,7 @@
 """What a module that calls a library returns or raises, and how the mesh comes back; it imports no library.
 
-Each of `foreign_vtk`, `foreign_gltf`, `foreign_3mf` and `foreign_meshio` has a function
-`read(path: Path, kind: str) -> ForeignMesh`, which runs in the process of `foreign_worker`.
+Each of `vtk`, `gltf`, `three_mf` and `solvers` has a function
+`read(path: Path, kind: str) -> ForeignMesh`, which runs in the process of `worker`.
 """
 
 from __future__ import annotations

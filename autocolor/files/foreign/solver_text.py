@@ -15,8 +15,8 @@ from typing import Final
 
 from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.files.meshes.cells import CORNERS
-from autocolor.files.meshes.foreign_mesh import ForeignRefusal
+from autocolor.files.foreign.cells import CORNERS
+from autocolor.files.foreign.mesh import ForeignRefusal
 from autocolor.files.paths import path_within
 from autocolor.files.reading import opened
 

@@ -6,7 +6,7 @@
   (as in .b8.ugrid): meshio, of which these formats need no further package. They are the extra `meshes`.
 
 A library may hang, crash, print or eat memory without harm to this process. The other process
-(`foreign_worker`) writes the mesh as an archive of numpy, whose numbers are checked.
+(`worker`) writes the mesh as an archive of numpy, whose numbers are checked.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from autocolor.budget import allowed_memory, validated_limit
 from autocolor.checks import printable
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import GROWTH
-from autocolor.files.meshes.foreign_mesh import REMEDY, ForeignMesh, ForeignRefusal, loaded
-from autocolor.files.meshes.gltf_document import size_of_gltf
-from autocolor.files.meshes.meshio_text import size_of_text
+from autocolor.files.foreign.gltf_document import size_of_gltf
+from autocolor.files.foreign.mesh import REMEDY, ForeignMesh, ForeignRefusal, loaded
+from autocolor.files.foreign.solver_text import size_of_text
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, repaired
 from autocolor.files.reading import opened, require_size
 from autocolor.scene.defaults import created_surface
@@ -64,7 +64,7 @@ def size_of_3mf(path: Path) -> int:
 STARTING_SECONDS: Final = 30.0
 """Limit: of time to load a library on a busy machine, in addition to twice the time of computing."""
 
-WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.meshes.foreign_worker")
+WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.foreign.worker")
 """The command; -P keeps modules in the current folder, which may be a stranger's, from being imported."""
 
 FAILED: Final = 3
@@ -178,14 +178,20 @@ FOREIGN: Final = (
     ForeignFormat(
         "glTF", (".glb", ".gltf"), "VTK", "gltf", "", 12, re.compile(b"glTF").match, size_of_gltf, up="y"
     ),
-    ForeignFormat("3MF", (".3mf",), "lib3mf", "3mf", "", 20, size_of=size_of_3mf, up="z"),
-    ForeignFormat("Abaqus", (".inp",), "meshio", "meshio", "abaqus", 8, size_of=size_of_text("abaqus")),
-    ForeignFormat("Gmsh", (".msh",), "meshio", "meshio", "gmsh", 8),
+    ForeignFormat("3MF", (".3mf",), "lib3mf", "three_mf", "", 20, size_of=size_of_3mf, up="z"),
+    ForeignFormat("Abaqus", (".inp",), "meshio", "solvers", "abaqus", 8, size_of=size_of_text("abaqus")),
+    ForeignFormat("Gmsh", (".msh",), "meshio", "solvers", "gmsh", 8),
     ForeignFormat(
-        "Nastran", (".bdf", ".nas", ".fem"), "meshio", "meshio", "nastran", 8, size_of=size_of_text("nastran")
+        "Nastran",
+        (".bdf", ".nas", ".fem"),
+        "meshio",
+        "solvers",
+        "nastran",
+        8,
+        size_of=size_of_text("nastran"),
     ),
-    ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "meshio", "medit", 8),
-    ForeignFormat("UGRID", (".ugrid",), "meshio", "meshio", "ugrid", 8),
+    ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "solvers", "medit", 8),
+    ForeignFormat("UGRID", (".ugrid",), "meshio", "solvers", "ugrid", 8),
 )
 
 

@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from autocolor.files.meshes.cells import BASES, CORNERS, CellSurface, Flats, Volumes, cell_surface
-from tests.autocolor.files.meshes.conftest import CUBE, SIDES
+from autocolor.files.foreign.cells import BASES, CORNERS, CellSurface, Flats, Volumes, cell_surface
+from tests.autocolor.files.foreign.conftest import CUBE, SIDES
 
 NO_FLATS = Flats.joined([])
 

@@ -15,20 +15,19 @@ from hypothesis import strategies as st
 from autocolor.budget import MEMORY, allowing
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, UnavailableError
-from autocolor.files.formats import format_of, read_mesh
-from autocolor.files.meshes import foreign
-from autocolor.files.meshes.foreign import (
+from autocolor.files.foreign import reader
+from autocolor.files.foreign.mesh import ForeignMesh, part_names_of
+from autocolor.files.foreign.reader import (
     ForeignFormat,
     most_memory,
     most_seconds,
     read_in_own_process,
     size_of_3mf,
 )
-from autocolor.files.meshes.foreign_mesh import ForeignMesh, part_names_of
-from tests.autocolor.files.meshes.conftest import OWN
-from tests.autocolor.files.meshes.test_foreign_gltf import Gltf
-from tests.autocolor.files.meshes.test_foreign_vtk import TEXT
-from tests.autocolor.files.meshes.test_meshio import (
+from autocolor.files.formats import format_of, read_mesh
+from tests.autocolor.files.foreign.conftest import OWN
+from tests.autocolor.files.foreign.test_gltf import Gltf
+from tests.autocolor.files.foreign.test_solvers import (
     BULK,
     CELLS2,
     GRIDS,
@@ -40,6 +39,7 @@ from tests.autocolor.files.meshes.test_meshio import (
     SHELL,
     SQUARE,
 )
+from tests.autocolor.files.foreign.test_vtk import TEXT
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 
 FAKE = ForeignFormat("Fake", (".fake",), "fake", "fake", "", 1)
@@ -65,7 +65,7 @@ def mesh(**changes: str) -> str:
 def test_a_mesh_comes_back_and_what_a_library_prints_goes_nowhere(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(foreign, "WORKER", OWN)
+    monkeypatch.setattr(reader, "WORKER", OWN)
     rows = {"normals": "np.eye(3) * 2", "corner_normals": "[2, -1, 0]"}
     printing = "import os; print('noise' * 100000); os.write(2, b'noise'); os.write(1, b'noise')\n"
     polygons = read(
@@ -120,7 +120,7 @@ def test_a_library_may_fail_in_any_way_and_nothing_is_believed(
 @pytest.mark.parametrize("data", [b"", b"PK", b"\x80\x04N."])
 def test_what_is_no_mesh_is_refused(tmp_path: Path, data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        foreign, "_exit_code", lambda command, _: Path(command[-3]).write_bytes(data) - len(data)
+        reader, "_exit_code", lambda command, _: Path(command[-3]).write_bytes(data) - len(data)
     )
     assert refusal(read, tmp_path, "").startswith("a.fake: fake must give a whole mesh, and does not (")
 
@@ -133,8 +133,8 @@ def test_what_is_no_mesh_is_refused(tmp_path: Path, data: bytes, monkeypatch: py
 def test_a_library_that_hangs_is_ended(
     tmp_path: Path, body: str, starting: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(foreign, "WORKER", OWN)
-    monkeypatch.setattr(foreign, "STARTING_SECONDS", starting)
+    monkeypatch.setattr(reader, "WORKER", OWN)
+    monkeypatch.setattr(reader, "STARTING_SECONDS", starting)
     assert refusal(read, tmp_path, body) == (
         "a.fake: fake must read it within 6 seconds, for its size, and did not; write it as OBJ or PLY,"
         " or allow more with --limit (limit= in Python)"

@@ -22,7 +22,7 @@ import numpy as np
 from autocolor.arrays import AnyArray
 from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.files.meshes.foreign_mesh import ForeignRefusal
+from autocolor.files.foreign.mesh import ForeignRefusal
 from autocolor.files.paths import path_within
 from autocolor.files.reading import bounded_json, read_whole, status_of
 

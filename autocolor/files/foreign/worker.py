@@ -1,7 +1,7 @@
 """The process in which a library reads a file.
 
-It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`.
-The module `foreign_MODULE` calls the library, SIZE is the number of bytes to read, and LIMIT a factor for the
+It is started as `python -m autocolor.files.foreign.worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`.
+The module MODULE of this folder calls the library, SIZE is the number of bytes to read, and LIMIT a factor for the
 budget. Once the library is loaded, the system limits time, memory and the size of the result. If the file
 cannot be read, the exit code is FAILED and the result a sentence.
 """
@@ -19,8 +19,8 @@ from pathlib import Path
 
 from autocolor.budget import allowing
 from autocolor.errors import InputError
-from autocolor.files.meshes.foreign import FAILED, most_memory, most_seconds
-from autocolor.files.meshes.foreign_mesh import ForeignRefusal, save, unreadable
+from autocolor.files.foreign.mesh import ForeignRefusal, save, unreadable
+from autocolor.files.foreign.reader import FAILED, most_memory, most_seconds
 
 
 def main(arguments: list[str]) -> int:
@@ -30,7 +30,7 @@ def main(arguments: list[str]) -> int:
     sys.dont_write_bytecode = True
     tempfile.tempdir = os.path.dirname(result)
     try:
-        module = importlib.import_module(f"autocolor.files.meshes.foreign_{name}")
+        module = importlib.import_module(f"autocolor.files.foreign.{name}")
         with allowing(float(factor)):
             limit(int(size))
             save(module.read(Path(mesh), kind), Path(result))

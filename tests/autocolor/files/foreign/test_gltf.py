@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from autocolor.files.foreign.gltf_document import completed, document, size_of_gltf
+from autocolor.files.foreign.reader import FOREIGN, read_in_own_process
 from autocolor.files.formats import read_mesh
-from autocolor.files.meshes.foreign import FOREIGN, read_in_own_process
-from autocolor.files.meshes.gltf_document import completed, document, size_of_gltf
 from autocolor.files.meshes.repair import MeshReport, Placement
-from tests.autocolor.files.meshes.conftest import CUBE, SIDES, area_and_volume
+from tests.autocolor.files.foreign.conftest import CUBE, SIDES, area_and_volume
 from tests.autocolor.files.refusals import refusal, refused
 
 pytestmark = [pytest.mark.needs("vtkmodules"), pytest.mark.usefixtures("shared")]

@@ -18,7 +18,7 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import Color, shown
-from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of, unreadable
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, part_names_of, unreadable
 from autocolor.files.meshes.repair import RawPolygons, printable_name
 
 Mesh = tuple[Floats, Indices, list[tuple[str, Indices]]]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from autocolor.files.formats import read_mesh
-from tests.autocolor.files.meshes.conftest import CUBE, SIDES, area_and_volume
+from tests.autocolor.files.foreign.conftest import CUBE, SIDES, area_and_volume
 from tests.autocolor.files.refusals import refusal
 from tests.tables import first
 

@@ -1,4 +1,4 @@
-"""Reading glTF and GLB files with VTK, in the process of `foreign_worker`.
+"""Reading glTF and GLB files with VTK, in the process of `worker`.
 
 VTK unpacks the arrays, places the nodes, and applies skins and the default weights of morph targets. Each
 primitive of each node of the default scene is a part. Its nodes at the same place are welded, since glTF
@@ -20,9 +20,9 @@ from vtkmodules.vtkIOGeometry import vtkGLTFReader
 
 from autocolor.arrays import Floats, Indices
 from autocolor.checks import Color, listed
-from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of
-from autocolor.files.meshes.foreign_vtk import listening, places_of, polygons_of, refuse_printed
-from autocolor.files.meshes.gltf_document import Row, completed, document, refuse_extensions, rows
+from autocolor.files.foreign.gltf_document import Row, completed, document, refuse_extensions, rows
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, part_names_of
+from autocolor.files.foreign.vtk import listening, places_of, polygons_of, refuse_printed
 from autocolor.files.meshes.repair import RawPolygons, different, printable_name
 from autocolor.files.meshes.welding import welded
 

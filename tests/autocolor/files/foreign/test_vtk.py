@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from autocolor.errors import InputError
+from autocolor.files.foreign.reader import FOREIGN, read_in_own_process
 from autocolor.files.formats import read_mesh
-from autocolor.files.meshes.foreign import FOREIGN, read_in_own_process
-from tests.autocolor.files.meshes.conftest import CUBE, SIDES, area_and_volume
+from tests.autocolor.files.foreign.conftest import CUBE, SIDES, area_and_volume
 from tests.autocolor.files.refusals import refusal
 from tests.tables import first
 
