@@ -10,11 +10,11 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import AnyArray
+from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE, Color, printable, shown
 from autocolor.files.meshes.repair import RawPolygons, different, printable_name
 from autocolor.immutable import read_only
@@ -58,6 +58,47 @@ def part_names_of(names: Sequence[str]) -> tuple[str, ...]:
     return different([printable_name(name) or "part" for name in names])
 
 
+class Part(NamedTuple):
+    """Triangles, (triangles, 3), of a part, whose nodes other parts may have, too.
+
+    `material` is "" and `normals`, (corners, 3), are None if it has none.
+    """
+
+    name: str
+    material: str
+    coordinates: Floats
+    triangles: Indices
+    normals: Floats | None = None
+
+
+def joined(parts: Sequence[Part], sentences: Sequence[str], colors: Mapping[str, Color]) -> ForeignMesh:
+    """The mesh of at least one part."""
+    names, counts = part_names_of([part.name for part in parts]), [len(part.triangles) for part in parts]
+    # The same array of nodes, which several parts may have, is there once.
+    nodes = {id(part.coordinates): part.coordinates for part in parts}
+    ends = np.cumsum([len(each) for each in nodes.values()])
+    firsts = dict(zip(nodes, [0, *ends.tolist()], strict=False))
+    corners = np.concatenate([firsts[id(part.coordinates)] + part.triangles for part in parts]).ravel()
+    normals = np.concatenate(
+        [
+            np.full((each.triangles.size, 3), np.nan) if each.normals is None else each.normals
+            for each in parts
+        ]
+    )
+    has_normals = not np.isnan(normals).all()
+    polygons = RawPolygons(
+        np.concatenate([*nodes.values()]),
+        corners,
+        np.full(sum(counts), 3, np.intp),
+        np.repeat(np.arange(len(parts)), counts),
+        names,
+        normals=normals if has_normals else None,
+        corner_normals=np.arange(len(normals)) if has_normals else None,
+    )
+    materials = {name: part.material for name, part in zip(names, parts, strict=True) if part.material}
+    return ForeignMesh(polygons, tuple(sentences), materials, colors)
+
+
 # The archive of numpy that a mesh comes back in.
 
 ARRAYS: Final = ("coordinates", "corners", "corner_counts", "part_numbers")
@@ -67,11 +108,8 @@ NORMALS: Final = ("normals", "corner_normals")
 def save(mesh: ForeignMesh, result: Path) -> None:
     """Write a mesh as an archive."""
     polygons = mesh.polygons
-    header = {
-        "part_names": polygons.part_names,
-        "scalars": [(each.name, each.of) for each in polygons.scalars],
-        "others": (mesh.sentences, dict(mesh.material_of_part), dict(mesh.colors)),
-    }
+    scalars = [(each.name, each.of) for each in polygons.scalars]
+    header = (polygons.part_names, mesh.sentences, mesh.material_of_part, mesh.colors, scalars)
     names = ARRAYS if polygons.normals is None else ARRAYS + NORMALS
     arrays: dict[str, AnyArray] = {name: vars(polygons)[name] for name in names}
     arrays |= {f"scalar_{number}": each.values for number, each in enumerate(polygons.scalars)}
@@ -88,7 +126,7 @@ def loaded(result: Path) -> ForeignMesh:
     with np.load(result, allow_pickle=False) as file:
         header = json.loads(str(file["header"]))
         arrays = {name: file[name] for name in file.files if name != "header"}
-    coordinates = arrays["coordinates"].astype(np.float64)
+    coordinates, normals = arrays["coordinates"], arrays.get("normals")
     corners, counts, parts = (arrays[name].astype(np.intp) for name in ARRAYS[1:])
     wrong = np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))
     if len(wrong):
@@ -96,11 +134,9 @@ def loaded(result: Path) -> ForeignMesh:
             "the coordinates of a node must be finite and at most 1e30 in size, not"
             f" {shown(coordinates[wrong[0]].tolist())} (node {wrong[0] + 1:,})"
         )
-    scalars = [
-        MeshScalar(name, read_only(arrays[f"scalar_{number}"]), of)
-        for number, (name, of) in enumerate(header["scalars"])
-    ]
-    names, normals, of_corners = header["part_names"], arrays.get("normals"), arrays.get("corner_normals")
+    names, sentences, material_of_part, colors, rows = header
+    scalars = [MeshScalar(name, read_only(arrays[f"scalar_{at}"]), of) for at, (name, of) in enumerate(rows)]
+    of_corners = arrays.get("corner_normals")
     shapes = [(coordinates, (len(coordinates), 3)), (corners, (counts.sum(),)), (parts, counts.shape)]
     shapes += [(each.values, (len(coordinates if each.of == NODE else counts),)) for each in scalars]
     if normals is not None and of_corners is not None:
@@ -111,7 +147,7 @@ def loaded(result: Path) -> ForeignMesh:
     ):
         raise ValueError("its numbers are of nodes, corners or parts that are not there")
     polygons = RawPolygons(
-        coordinates,
+        coordinates.astype(np.float64),
         corners,
         counts,
         parts,
@@ -120,8 +156,4 @@ def loaded(result: Path) -> ForeignMesh:
         normals=normals,
         corner_normals=of_corners,
     )
-    sentences, material_of_part, colors = header["others"]
-    sentences = tuple(printable(each[:300]) for each in sentences)
-    # JSON has lists for tuples.
-    colors = {name: (red, green, blue) for name, (red, green, blue) in colors.items()}
-    return ForeignMesh(polygons, sentences, material_of_part, colors)
+    return ForeignMesh(polygons, tuple(printable(each[:300]) for each in sentences), material_of_part, colors)

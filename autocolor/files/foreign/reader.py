@@ -15,8 +15,6 @@ import dataclasses
 import importlib.util
 import os
 import re
-import signal
-import struct
 import subprocess
 import sys
 import tempfile
@@ -38,7 +36,24 @@ from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, repaired
 from autocolor.files.reading import opened, require_size
 from autocolor.scene.defaults import created_surface
 
-# The size of a file and of the files that it names, which gives the limits.
+WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.foreign.worker")
+"""The command; -P keeps modules in the current folder, which may be a stranger's, from being imported."""
+
+FAILED: Final = 3
+"""The exit code if the file cannot be read; the result is then a sentence."""
+
+
+def most_seconds(size: int) -> float:
+    """Limit: seconds for a file of `size` bytes, of which half a minute is to load a library.
+
+    Measured: text takes 0.1 to 0.5 a megabyte, a glTF file of many small parts up to 3.
+    """
+    return min((30 + 4 * size / (1 << 20)) * max(1, validated_limit(None)), 1e9)
+
+
+def most_memory(size: int) -> int:
+    """Limit: bytes of address space. Libraries take half a gigabyte, at times 40 times the size of a text."""
+    return (1 << 30) + int(min(60 * size * max(1, validated_limit(None)), allowed_memory()))
 
 
 def size_of_file(path: Path) -> int:
@@ -47,96 +62,40 @@ def size_of_file(path: Path) -> int:
         return status.st_size
 
 
-def size_of_3mf(path: Path) -> int:
-    """The bytes of the unpacked files of a 3MF file, by the directory of the archive. Raises InputError."""
-    with opened(path) as (file, status):
-        try:
-            with zipfile.ZipFile(file) as archive:
-                return max(status.st_size, sum(member.file_size for member in archive.infolist()))
-        except (zipfile.BadZipFile, OSError, RuntimeError, LookupError, ValueError, struct.error) as error:
-            raise InputError(
-                f"{path.name}: a 3MF file must be a whole ZIP archive, not damaged ({error}); write it again"
-            ) from None
-
-
-# The other process. Its limits grow with the size of the file.
-
-STARTING_SECONDS: Final = 30.0
-"""Limit: of time to load a library on a busy machine, in addition to twice the time of computing."""
-
-WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.foreign.worker")
-"""The command; -P keeps modules in the current folder, which may be a stranger's, from being imported."""
-
-FAILED: Final = 3
-"""The exit code if the file cannot be read; the result is then a sentence."""
-
-OUT_OF_TIME: Final = -int(getattr(signal, "SIGXCPU", 24))
-"""The exit code of a process that computed for too long and was ended by the system."""
-
-
-def most_seconds(size: int) -> float:
-    """Limit: seconds of computing for a file of `size` bytes.
-
-    Measured: text takes 0.1 to 0.5 a megabyte, a glTF file of many small parts up to 3.
-    """
-    return min((6 + 2 * size / (1 << 20)) * max(1, validated_limit(None)), 1e9)
-
-
-def most_memory(size: int) -> int:
-    """Limit: bytes of address space. Libraries take half a gigabyte, at times 40 times the size of a text."""
-    return (1 << 30) + int(min(60 * size * max(1, validated_limit(None)), allowed_memory()))
-
-
 def read_in_own_process(read_as: ForeignFormat, path: Path, size: int) -> ForeignMesh:
     """The mesh of a file of `size` bytes that a library reads in its own process. Raises InputError."""
-    library = read_as.library
+    library, seconds, nowhere = read_as.library, most_seconds(size), subprocess.DEVNULL
+    paths = [str(Path(autocolor.files.__path__[0]).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
+    # Each thread reserves memory, which is limited.
+    one = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "VTK_SMP_MAX_THREADS"), "1")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **one}
     with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
-        result = Path(folder) / "mesh.npz"
-        file, limit = os.fspath(path.absolute()), str(validated_limit(None))
-        arguments = (library, read_as.module, read_as.kind, file, os.fspath(result), str(size), limit)
-        seconds = most_seconds(size)
-        code = _exit_code((*WORKER, *arguments), STARTING_SECONDS + 2 * seconds)
-        if code in (None, OUT_OF_TIME):
+        result, file = Path(folder) / "mesh.npz", os.fspath(path.absolute())
+        names = (library, read_as.module, read_as.kind, file, os.fspath(result))
+        try:
+            code = subprocess.call(
+                (*WORKER, *names, str(size), str(validated_limit(None))),
+                stdin=nowhere, stdout=nowhere, stderr=nowhere, env=environment, timeout=seconds,
+            )  # fmt: skip
+            if code == FAILED:
+                sentence = printable(result.read_text("utf-8", "replace")[:2000])
+                raise InputError(sentence if sentence.startswith(path.name) else f"{path.name}: {sentence}")
+            if code == 0:
+                require_size(path.name, result.stat().st_size, GROWTH)
+                return loaded(result)
+            reason = f"it crashed (code {code})"
+        except subprocess.TimeoutExpired:
             raise InputError(
                 f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
                 " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
-            )
-        if code == FAILED and result.is_file():
-            sentence = printable(result.read_text("utf-8", "replace")[:2000])
-            raise InputError(sentence if sentence.startswith(path.name) else f"{path.name}: {sentence}")
-        if code != 0:
-            raise InputError(f"{path.name}: {library} must read it, and crashed (code {code}); {REMEDY}")
-        require_size(path.name, result.stat().st_size, GROWTH)
-        try:
-            return loaded(result)
+            ) from None
+        except InputError:
+            raise
         except ForeignRefusal as error:
             raise InputError(f"{path.name}: {error}") from None
         except (zipfile.BadZipFile, OSError, EOFError, ValueError, LookupError, TypeError) as error:
-            raise InputError(
-                f"{path.name}: {library} must give a whole mesh, and does not ({str(error)[:300]}); {REMEDY}"
-            ) from None
-
-
-def _exit_code(command: tuple[str, ...], seconds: float) -> int | None:
-    """The exit code of a command, which prints nothing; None if it took longer than `seconds`."""
-    root = str(Path(autocolor.files.__path__[0]).parents[1])
-    inherited = os.environ.get("PYTHONPATH")
-    environment = {
-        **os.environ,
-        "PYTHONPATH": os.pathsep.join([root, inherited] if inherited else [root]),
-        # Each thread reserves memory, which is limited.
-        **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "VTK_SMP_MAX_THREADS"), "1"),
-    }
-    nowhere = subprocess.DEVNULL
-    try:
-        return subprocess.call(
-            command, stdin=nowhere, stdout=nowhere, stderr=nowhere, env=environment, timeout=seconds
-        )
-    except subprocess.TimeoutExpired:
-        return None
-    except OSError:
-        # As a shell says that a command cannot be started.
-        return 127
+            reason = str(error)[:300]
+        raise InputError(f"{path.name}: {library} must give a whole mesh, and does not ({reason}); {REMEDY}")
 
 
 LIBRARIES: Final = {
@@ -178,7 +137,8 @@ FOREIGN: Final = (
     ForeignFormat(
         "glTF", (".glb", ".gltf"), "VTK", "gltf", "", 12, re.compile(b"glTF").match, size_of_gltf, up="y"
     ),
-    ForeignFormat("3MF", (".3mf",), "lib3mf", "three_mf", "", 20, size_of=size_of_3mf, up="z"),
+    # It is packed.
+    ForeignFormat("3MF", (".3mf",), "lib3mf", "three_mf", "", 100, up="z"),
     ForeignFormat("Abaqus", (".inp",), "meshio", "solvers", "abaqus", 8, size_of=size_of_text("abaqus")),
     ForeignFormat("Gmsh", (".msh",), "meshio", "solvers", "gmsh", 8),
     ForeignFormat(

@@ -10,7 +10,6 @@ alone: it trusts the nodes of cells, and numbers the cells of a surface wrongly 
 from __future__ import annotations
 
 import re
-from collections import Counter
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,20 +17,14 @@ import numpy as np
 from vtkmodules import vtkIOXML
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonDataModel import vtkGenericCell
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOLegacy import vtkDataSetReader
 
-from autocolor.arrays import AnyArray, Floats, Indices, cross, dot, runs
+from autocolor.arrays import AnyArray, Booleans, Floats, Indices, cross, dot, runs
 from autocolor.checks import listed, shown
-from autocolor.files.foreign.cells import (
-    CORNERS,
-    CellSurface,
-    Flats,
-    Volumes,
-    cell_surface,
-    surface_sentences,
-)
+from autocolor.files.foreign.cells import CORNERS, Block, CellSurface, Flats, cell_surface, surface_sentences
 from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, unreadable
 from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.repair import RawPolygons, printable_name
@@ -51,20 +44,9 @@ ANY_POLYGON: Final = 7
 PIXEL: Final = 8
 VOXEL: Final = 11
 POLYHEDRON: Final = 42
-WITHOUT_FACES: Final = {1: "vertices", 2: "vertices", **dict.fromkeys((3, 4, 21, 35, 68, 75), "lines")}
-TYPES: Final = {
-    "triangle": (5, 22, 34, 69, 76),
-    "quad": (PIXEL, 9, 23, 28, 30, 70, 77),
-    "tetra": (10, 24, 71, 78),
-    "pyramid": (14, 27, 37, 74, 81),
-    "wedge": (13, 26, 31, 32, 73, 80),
-    "hexahedron": (VOXEL, 12, 25, 29, 33, 72, 79),
-}
-"""The types of each shape. From 21 on they are of higher order; their corners come first."""
+SHAPE_OF_EDGES: Final = {3: "triangle", 4: "quad", 6: "tetra", 8: "pyramid", 9: "wedge", 12: "hexahedron"}
+"""The shape of a cell by the number of its edges."""
 
-SHAPES: Final = {type_: shape for shape, types in TYPES.items() for type_ in types}
-ALL_CORNERS: Final = {"triangle": 3, "quad": 4, **CORNERS}
-HIGHER_ORDER: Final = 21
 ALONG_AXES: Final = [0, 1, 3, 2, 4, 5, 7, 6]
 """The order in which the corners of a pixel or voxel go around it."""
 
@@ -81,36 +63,41 @@ def read(path: Path, kind: str) -> ForeignMesh:
     # VTK prints of arrays that have other numbers of values than there are nodes or cells.
     data.CheckAttributes()
     refuse_printed(window, path)
-    nodes, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
-    if not nodes or not cells:
-        raise ForeignRefusal(f"it must have nodes and cells, not {nodes:,} nodes and {cells:,} cells")
-    ghosts = np.zeros(cells, np.uint8)
-    if ghost_type := data.GetCellData().GetArray("vtkGhostType"):
-        ghosts = vtk_to_numpy(ghost_type)
-    read_surface = {"vtkUnstructuredGrid": _unstructured, "vtkPolyData": _flat}.get(
-        data.GetClassName(), _structured
-    )
-    places, found = read_surface(data, ghosts)
+    if not data.GetNumberOfPoints() or not data.GetNumberOfCells():
+        raise ForeignRefusal("it must have nodes and cells, and has none")
+    ghosts, is_turned = _ghosts(data), False
+    if count := np.count_nonzero(ghosts):
+        sentences.append(f"left out hidden or duplicate cells: {count:,}")
+    if not data.IsA("vtkPolyData") and not data.IsA("vtkUnstructuredGrid"):
+        data, is_turned = _outer(data, sentences)
+        ghosts = _ghosts(data)
+    surface = surface_of(data, (ghosts & HIDDEN) != 0)
     refuse_printed(window, path)
-    sentences += found.sentences
-    is_left_out = (ghosts & (DUPLICATE | HIDDEN)) != 0
-    if is_left_out.any():
-        sentences.append(f"left out hidden or duplicate cells: {np.count_nonzero(is_left_out):,}")
-    flats = found.flats.chosen(~is_left_out[found.flats.cells])
+    sentences += surface.sentences
+    flats = surface.flats.chosen(ghosts[surface.flats.cells] == 0)
     if not len(flats.cells):
         raise ForeignRefusal("; ".join(["it must have polygons or volume cells", *sentences]))
-    scalars, normals = _attributes(data, found.nodes, flats.cells, sentences)
+    corners = flats.corners.reshape(-1, 4)[:, ::-1].ravel() if is_turned else flats.corners
+    scalars, normals = _attributes(data, surface.nodes, flats.cells, sentences)
     polygons = RawPolygons(
-        places,
-        flats.corners,
+        places_of(data)[surface.nodes],
+        corners,
         flats.corner_counts,
         np.zeros(len(flats.cells), np.intp),
         (printable_name(path.stem) or "part",),
         scalars,
         normals=normals,
-        corner_normals=None if normals is None else flats.corners,
+        corner_normals=None if normals is None else corners,
     )
     return ForeignMesh(polygons, tuple(sentences))
+
+
+def _ghosts(data: Any) -> AnyArray:
+    """For each cell, whether it is elsewhere, too, or not shown; otherwise 0."""
+    ghosts = data.GetCellData().GetArray("vtkGhostType")
+    return (vtk_to_numpy(ghosts) if ghosts else np.zeros(data.GetNumberOfCells(), np.uint8)) & (
+        DUPLICATE | HIDDEN
+    )
 
 
 def _legacy(path: Path) -> tuple[Any, list[str]]:
@@ -181,43 +168,91 @@ def places_of(data: Any) -> Floats:
     return places
 
 
-def _lists(cells: Any, count: int) -> tuple[Indices, Indices]:
+def _outer(data: Any, sentences: list[str]) -> tuple[Any, bool]:
+    """The outer surface of a grid in rows and columns, as polygonal data, and whether it is inside out.
+
+    Adds sentences about it. Raises ForeignRefusal.
+    """
+    extent = data.GetExtent()
+    sides = tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True))
+    wanted, given = (np.prod(sides),), (data.GetNumberOfPoints(),)
+    if data.IsA("vtkRectilinearGrid"):
+        axes = (data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates())
+        wanted, given = sides, tuple(axis.GetNumberOfTuples() for axis in axes)
+    if wanted != given:
+        raise ForeignRefusal(f"a grid of {sides} nodes must have as many, not {given}")
+    geometry = vtkGeometryFilter()
+    geometry.SetInputData(data)
+    geometry.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
+    geometry.Update()
+    outer = geometry.GetOutput()
+    if min(sides) == 1 or not outer.GetNumberOfPolys():
+        return outer, False
+    sentences += surface_sentences(data.GetNumberOfCells(), given[0] - outer.GetNumberOfPoints())
+    quads = _lists(outer.GetPolys())[0].reshape(-1, 4)
+    a, b, c, d = (places_of(outer)[corners].T for corners in quads.T)
+    # A left-handed grid is inside out.
+    return outer, bool(dot(a, cross(b, c) + cross(c, d)).sum() < 0)
+
+
+def _lists(cells: Any) -> tuple[Indices, Indices]:
     """The numbers in all lists of a cell array, one after the other, and the length of each list.
 
-    Raises ForeignRefusal unless all are from 0 to below `count`.
+    Raises ForeignRefusal.
     """
     arrays = (cells.GetConnectivityArray(), cells.GetOffsetsArray())
     numbers, offsets = (vtk_to_numpy(each).astype(np.intp) for each in arrays)
-    if not len(numbers):
-        return numbers, np.zeros(max(len(offsets) - 1, 0), np.intp)
     sizes = np.diff(offsets)
-    if offsets[0] != 0 or offsets[-1] != len(numbers) or sizes.min() < 0:
+    if len(numbers) and (offsets[0] or offsets[-1] != len(numbers) or min(sizes.min(), numbers.min()) < 0):
         raise ForeignRefusal("the offsets of cells must rise from 0 to the number of their nodes")
-    wrong = np.flatnonzero((numbers < 0) | (numbers >= count))
-    if len(wrong):
-        cell = int(np.searchsorted(offsets, wrong[0], side="right"))
-        raise ForeignRefusal(
-            f"a cell must have nodes of the file, from 0 to {count - 1:,}, not {numbers[wrong[0]]}"
-            f" (cell {cell:,})"
-        )
-    return numbers, sizes
+    return numbers, sizes if len(numbers) else np.zeros_like(sizes)
 
 
-def polygons_of(data: Any) -> Flats:
-    """The polygons of polygonal data, and the triangles of its strips. Raises ForeignRefusal."""
-    first, several = data.GetNumberOfVerts() + data.GetNumberOfLines(), []
-    for cells in (data.GetPolys(), data.GetStrips()):
-        numbers, sizes = _lists(cells, data.GetNumberOfPoints())
-        several.append(Flats(numbers, sizes, np.arange(first, first + len(sizes))))
-        first += len(sizes)
-    return Flats.joined([several[0], _triangles(several[1])])
+def _cells(data: Any) -> tuple[Indices, Flats]:
+    """The types and the nodes of all cells. Raises ForeignRefusal."""
+    if data.IsA("vtkPolyData"):
+        arrays = (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips())
+        numbers, sizes = (np.concatenate(each) for each in zip(*map(_lists, arrays), strict=True))
+        types = np.repeat([1, 3, ANY_POLYGON, STRIP], [each.GetNumberOfCells() for each in arrays])
+    else:
+        numbers, sizes = _lists(data.GetCells())
+        # The name of the array before VTK 9.6 is the second.
+        types = vtk_to_numpy(getattr(data, "GetCellTypesArray", data.GetCellTypes)()).astype(np.intp)
+    return types, Flats(numbers, sizes, np.arange(len(sizes)))
 
 
-def _flat(data: Any, ghosts: AnyArray) -> tuple[Floats, CellSurface]:
-    """The coordinates of the nodes and the polygons of polygonal data. Raises ForeignRefusal."""
-    skipped = {"vertices": data.GetNumberOfVerts(), "lines": data.GetNumberOfLines()}
-    sentences = tuple(f"skipped {what}: {count:,}" for what, count in skipped.items() if count)
-    return places_of(data), CellSurface(polygons_of(data), np.arange(data.GetNumberOfPoints()), sentences)
+def surface_of(data: Any, is_hidden: Booleans | bool = False) -> CellSurface:
+    """The surface of polygonal data or an unstructured grid. Raises ForeignRefusal for strange cells."""
+    types, cells = _cells(data)
+    types = np.where(is_hidden, EMPTY, types)
+    blocks, flats, polyhedra, skipped = list[Block](), list[Flats](), list[Flats](), list[str]()
+    for type_ in np.unique(types).tolist():
+        rows, example = np.flatnonzero(types == type_), vtkGenericCell.InstantiateCell(type_)
+        if type_ == STRIP:
+            flats.append(_triangles(cells.chosen(rows)))
+        elif type_ == ANY_POLYGON:
+            flats.append(cells.chosen(rows))
+        elif type_ == POLYHEDRON:
+            polyhedra.append(_faces(data, rows))
+        elif example is not None and example.GetCellDimension() < 2:
+            if type_ != EMPTY:
+                skipped.append(
+                    f"skipped {'lines' if example.GetCellDimension() else 'vertices'}: {len(rows):,}"
+                )
+        elif example is not None and (shape := SHAPE_OF_EDGES.get(example.GetNumberOfEdges())):
+            count, sizes = CORNERS[shape], cells.corner_counts[rows]
+            is_wrong = sizes != count if example.IsLinear() else sizes < count
+            if is_wrong.any():
+                wrong = sizes[is_wrong][0]
+                raise ForeignRefusal(f"a cell of the type {type_} must have {count} nodes, not {wrong}")
+            if not example.IsLinear():
+                skipped.append(f"took the corners alone of cells of the type {type_}: {len(rows):,}")
+            order = ALONG_AXES[:count] if type_ in (PIXEL, VOXEL) else range(count)
+            blocks.append((shape, cells.corners[cells.starts[rows, None] + np.array(order)], rows))
+        else:
+            raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")
+    surface = cell_surface(places_of(data), blocks, flats, polyhedra)
+    return surface._replace(sentences=(*skipped, *surface.sentences))
 
 
 def _triangles(strips: Flats) -> Flats:
@@ -230,85 +265,14 @@ def _triangles(strips: Flats) -> Flats:
     return Flats.of(table, np.repeat(strips.cells, sizes))
 
 
-def _unstructured(grid: Any, ghosts: AnyArray) -> tuple[Floats, CellSurface]:
-    """The coordinates of the nodes of a surface, and the surface. Raises ForeignRefusal for strange cells."""
-    places = places_of(grid)
-    numbers, sizes = _lists(grid.GetCells(), len(places))
-    # The name of the array before VTK 9.6 is the second.
-    types = vtk_to_numpy(getattr(grid, "GetCellTypesArray", grid.GetCellTypes)()).astype(np.intp)
-    types[(ghosts & HIDDEN) != 0] = EMPTY
-    cells = Flats(numbers, sizes, np.arange(len(sizes)))
-    flats, volumes, polyhedra, skipped = list[Flats](), list[Volumes](), list[Flats](), Counter[str]()
-    for type_ in np.unique(types).tolist():
-        rows, shape = np.flatnonzero(types == type_), SHAPES.get(type_)
-        if type_ in WITHOUT_FACES:
-            skipped[f"skipped {WITHOUT_FACES[type_]}"] += len(rows)
-        elif type_ in (STRIP, ANY_POLYGON):
-            flats.append(_triangles(cells.chosen(rows)) if type_ == STRIP else cells.chosen(rows))
-        elif type_ == POLYHEDRON:
-            polyhedra.append(_faces(grid, rows))
-        elif shape is not None:
-            count, is_higher = ALL_CORNERS[shape], type_ >= HIGHER_ORDER
-            is_wrong = sizes[rows] < count if is_higher else sizes[rows] != count
-            if is_wrong.any():
-                wrong = sizes[rows[is_wrong][0]]
-                raise ForeignRefusal(f"a cell of the type {type_} must have {count} nodes, not {wrong}")
-            if is_higher:
-                skipped["took the corners alone of cells of higher order"] += len(rows)
-            order = ALONG_AXES[:count] if type_ in (PIXEL, VOXEL) else range(count)
-            table = numbers[cells.starts[rows, None] + np.array(order)]
-            if shape in CORNERS:
-                volumes.append(Volumes(shape, table, rows))
-            else:
-                flats.append(Flats.of(table, rows))
-        elif type_ != EMPTY:
-            raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")
-    surface = cell_surface(places, Flats.joined(flats), volumes, polyhedra)
-    sentences = (*(f"{what}: {count:,}" for what, count in skipped.items()), *surface.sentences)
-    return places[surface.nodes], surface._replace(sentences=sentences)
-
-
 def _faces(grid: Any, rows: Indices) -> Flats:
     """The faces of the polyhedra in some rows of a grid. Raises ForeignRefusal."""
-    corners, corner_counts = _lists(grid.GetPolyhedronFaces(), grid.GetNumberOfPoints())
-    faces, face_counts = _lists(grid.GetPolyhedronFaceLocations(), len(corner_counts))
+    corners, corner_counts = _lists(grid.GetPolyhedronFaces())
+    faces, face_counts = _lists(grid.GetPolyhedronFaceLocations())
     of_cells = Flats(faces, face_counts, np.arange(len(face_counts))).chosen(rows)
     owners = np.repeat(of_cells.cells, of_cells.corner_counts)
     chosen = Flats(corners, corner_counts, np.arange(len(corner_counts))).chosen(of_cells.corners)
     return Flats(chosen.corners, chosen.corner_counts, owners[corner_counts[of_cells.corners] > 0])
-
-
-def _structured(data: Any, ghosts: AnyArray) -> tuple[Floats, CellSurface]:
-    """The same for a grid in rows and columns. Raises ForeignRefusal."""
-    extent = data.GetExtent()
-    sides = tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True))
-    wanted, given = (np.prod(sides),), (data.GetNumberOfPoints(),)
-    if data.IsA("vtkRectilinearGrid"):
-        axes = (data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates())
-        wanted, given = sides, tuple(axis.GetNumberOfTuples() for axis in axes)
-    if wanted != given:
-        raise ForeignRefusal(f"a grid of {sides} nodes must have as many, not {given}")
-    geometry = vtkGeometryFilter()
-    geometry.SetInputData(data)
-    geometry.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
-    geometry.PassThroughCellIdsOn()
-    geometry.PassThroughPointIdsOn()
-    geometry.Update()
-    output = geometry.GetOutput()
-    if not output.GetNumberOfPolys():
-        raise ForeignRefusal("it must have polygons or volume cells, not points and lines alone")
-    nodes = vtk_to_numpy(output.GetPointData().GetArray("vtkOriginalPointIds")).astype(np.intp)
-    cells = vtk_to_numpy(output.GetCellData().GetArray("vtkOriginalCellIds")).astype(np.intp)
-    flats, places, sentences = polygons_of(output), places_of(output), list[str]()
-    quads = flats.corners.reshape(-1, 4)
-    if min(sides) > 1:
-        sentences = surface_sentences(data.GetNumberOfCells(), data.GetNumberOfPoints() - len(nodes))
-        a, b, c, d = (places[corners].T for corners in quads.T)
-        # A left-handed grid is inside out.
-        if dot(a, cross(b, c) + cross(c, d)).sum() < 0:
-            quads = quads[:, ::-1]
-    flats = Flats(quads.ravel(), flats.corner_counts, cells[flats.cells])
-    return places, CellSurface(flats, nodes, tuple(sentences))
 
 
 def _attributes(

@@ -1,26 +1,24 @@
 """The process in which a library reads a file.
 
 It is started as `python -m autocolor.files.foreign.worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`.
-The module MODULE of this folder calls the library, SIZE is the number of bytes to read, and LIMIT a factor for the
-budget. Once the library is loaded, the system limits time, memory and the size of the result. If the file
-cannot be read, the exit code is FAILED and the result a sentence.
+The module MODULE of this folder calls the library, SIZE is the number of bytes to read, and LIMIT a factor
+for the budget. Once the library is loaded, the system limits memory and the size of the result. If the
+file cannot be read, the exit code is FAILED and the result a sentence.
 """
 
 from __future__ import annotations
 
 import importlib
-import math
 import os
 import sys
 import tempfile
-import time
 import warnings
 from pathlib import Path
 
 from autocolor.budget import allowing
 from autocolor.errors import InputError
 from autocolor.files.foreign.mesh import ForeignRefusal, save, unreadable
-from autocolor.files.foreign.reader import FAILED, most_memory, most_seconds
+from autocolor.files.foreign.reader import FAILED, most_memory
 
 
 def main(arguments: list[str]) -> int:
@@ -47,29 +45,25 @@ def sentence_of(error: BaseException, library: str) -> str:
         return text
     if isinstance(error, MemoryError):
         text = "it needs more memory than its size and --limit allow"
-    else:
-        text = f"{type(error).__name__}: {text}"[:300]
-    return str(unreadable(library, text))
+    elif not text or (not isinstance(error, (OSError, ValueError)) and type(error).__module__ == "builtins"):
+        # Such as a KeyError, which says nothing to a user.
+        text = f"it is cut short or damaged, or has what {library} does not know"
+    return str(unreadable(library, text[:300]))
 
 
 def limit(size: int) -> None:
-    """Limit the time, the memory and the result of this process for a file of `size` bytes."""
+    """Limit the memory and the result of this process for a file of `size` bytes."""
     if sys.platform == "win32":
         return
     import resource
 
-    memory, seconds = most_memory(size), math.ceil(time.process_time() + most_seconds(size))
-    for kind, soft, hard in (
-        (resource.RLIMIT_AS, memory, memory),
-        (resource.RLIMIT_FSIZE, memory, memory),
-        (resource.RLIMIT_CORE, 0, 0),
-        # At the hard limit a process is killed without a reason; a second before, SIGXCPU tells it.
-        (resource.RLIMIT_CPU, seconds, seconds + 1),
-    ):
-        most = resource.getrlimit(kind)[1]
-        if most != resource.RLIM_INFINITY:
-            soft, hard = min(soft, most), min(hard, most)
-        resource.setrlimit(kind, (soft, hard))
+    memory = most_memory(size)
+    for kind, most in (
+        (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, memory), (resource.RLIMIT_CORE, 0),
+    ):  # fmt: skip
+        allowed = resource.getrlimit(kind)[1]
+        most = most if allowed == resource.RLIM_INFINITY else min(most, allowed)
+        resource.setrlimit(kind, (most, most))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from autocolor.files.foreign import reader
 from autocolor.files.meshes.repair import MeshReport
 
 PROGRAM = """
@@ -65,13 +64,13 @@ def worker() -> Iterator[subprocess.Popen[str]]:
 def shared(worker: subprocess.Popen[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """Files are read by forks of one process."""
 
-    def exit_code(command: tuple[str, ...], seconds: float) -> int:
+    def exit_code(command: tuple[str, ...], **options: object) -> int:
         assert worker.stdin is not None
         assert worker.stdout is not None
         print(json.dumps(command[-7:]), file=worker.stdin, flush=True)
         return int(worker.stdout.readline())
 
-    monkeypatch.setattr(reader, "_exit_code", exit_code)
+    monkeypatch.setattr(subprocess, "call", exit_code)
 
 
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1.0)])

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-import io
 import re
-import zipfile
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -22,7 +21,6 @@ from autocolor.files.foreign.reader import (
     most_memory,
     most_seconds,
     read_in_own_process,
-    size_of_3mf,
 )
 from autocolor.files.formats import format_of, read_mesh
 from tests.autocolor.files.foreign.conftest import OWN
@@ -87,11 +85,12 @@ ABSENT = MUST.format("its numbers are of nodes, corners or parts that are not th
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [
-        ("raise ValueError('no\\nnodes')", CANNOT.format("ValueError: no nodes")),
-        ("raise ValueError('x' * 1000)", CANNOT.format("ValueError: " + "x" * 288)),
+        ("raise ValueError('no\\nnodes')", CANNOT.format("no nodes")),
+        ("raise KeyError('x')",
+         CANNOT.format("it is cut short or damaged, or has what fake does not know")),
         ("raise ForeignRefusal('a cell must be flat', 'bend it')", "a.fake: a cell must be flat; bend it"),
         ("raise InputError('a.fake, line 2: it ends')", "a.fake, line 2: it ends"),
-        ("import os; os.abort()", f"a.fake: fake must read it, and crashed (code -6){END}"),
+        ("import os; os.abort()", MUST.format("it crashed (code -6)")),
         ("mesh = [bytes(1 << 20) for _ in range(5000)]",
          CANNOT.format("it needs more memory than its size and --limit allow")),
         (mesh(coordinates="np.full((3, 3), np.nan)"),
@@ -120,33 +119,26 @@ def test_a_library_may_fail_in_any_way_and_nothing_is_believed(
 @pytest.mark.parametrize("data", [b"", b"PK", b"\x80\x04N."])
 def test_what_is_no_mesh_is_refused(tmp_path: Path, data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        reader, "_exit_code", lambda command, _: Path(command[-3]).write_bytes(data) - len(data)
+        subprocess, "call", lambda command, **_: Path(command[-3]).write_bytes(data) - len(data)
     )
     assert refusal(read, tmp_path, "").startswith("a.fake: fake must give a whole mesh, and does not (")
 
 
-@pytest.mark.parametrize(
-    ("body", "starting"),
-    [("while True: pass", 30), ("import time; time.sleep(100)", -11)],
-    ids=["busy", "idle"],
-)
-def test_a_library_that_hangs_is_ended(
-    tmp_path: Path, body: str, starting: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_library_that_hangs_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reader, "WORKER", OWN)
-    monkeypatch.setattr(reader, "STARTING_SECONDS", starting)
-    assert refusal(read, tmp_path, body) == (
-        "a.fake: fake must read it within 6 seconds, for its size, and did not; write it as OBJ or PLY,"
+    monkeypatch.setattr(reader, "most_seconds", lambda size: 1)
+    assert refusal(read, tmp_path, "import time; time.sleep(100)") == (
+        "a.fake: fake must read it within 1 seconds, for its size, and did not; write it as OBJ or PLY,"
         " or allow more with --limit (limit= in Python)"
     )
 
 
 def test_limits_grow_with_the_size_of_the_file() -> None:
-    assert (most_seconds(0), most_memory(0)) == (6, 1 << 30)
-    assert (most_seconds(10 << 20), most_memory(10 << 20)) == (26, (1 << 30) + (600 << 20))
+    assert (most_seconds(0), most_memory(0)) == (30, 1 << 30)
+    assert (most_seconds(10 << 20), most_memory(10 << 20)) == (70, (1 << 30) + (600 << 20))
     assert most_memory(1 << 40) == (1 << 30) + MEMORY
     with allowing(3):
-        assert (most_seconds(0), most_memory(1 << 40)) == (18, (1 << 30) + 3 * MEMORY)
+        assert (most_seconds(0), most_memory(1 << 40)) == (90, (1 << 30) + 3 * MEMORY)
 
 
 def test_names_of_parts_are_made_unique_and_printable() -> None:
@@ -192,19 +184,6 @@ def test_files_of_vtk_and_gltf_are_known_by_how_they_begin(tmp_path: Path, head:
     found = format_of(tmp_path / "a.model")
     assert found is not None
     assert found.name == name
-
-
-def test_the_size_of_a_3mf_file_is_that_of_its_content(tmp_path: Path) -> None:
-    packed, path = io.BytesIO(), tmp_path / "a.3mf"
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for number in range(3):
-            archive.writestr(f"{number}.model", bytes(1_000_000))
-    path.write_bytes(packed.getvalue())
-    assert size_of_3mf(path) == 3_000_000
-    path.write_bytes(b"PK")
-    assert refusal(size_of_3mf, path) == (
-        "a.3mf: a 3MF file must be a whole ZIP archive, not damaged (File is not a zip file); write it again"
-    )
 
 
 # Damage.

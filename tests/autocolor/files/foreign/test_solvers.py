@@ -155,7 +155,7 @@ ONE = "there must be one part, which no *INSTANCE moves, not"
 BASIC = "must be in the basic system, not in the coordinate system 5"
 NUMBERS = "nodes and elements must be given by numbers"
 CANNOT = "meshio must be able to read it, and cannot"
-CUT = f"{CANNOT} (it is cut short, or has what meshio does not know)"
+CUT = f"{CANNOT} (it is cut short or damaged, or has what meshio does not know)"
 
 REFUSED = {
     "a.inp": [
@@ -168,7 +168,8 @@ REFUSED = {
         (f"{PART}*ASSEMBLY\n{SHELL}", "elements of type S4 must be in a *PART, not in *ASSEMBLY (line 11)"),
         (SQUARE + "*ELEMENT, TYPE=S7\n1, 1, 2, 3, 4\n", "element type 'S7' is not known (line 6)"),
         (SQUARE + "*ELEMENT, TYPE=S4\n1, 1, 2, 3\n", "elements of type S4 must have 4 nodes (line 6)"),
-        (SQUARE + SHELL.replace(" 4\n", " 9\n"), "a cell must have nodes of the file, which has 4"),
+        (SQUARE + SHELL.replace(" 4\n", " 9\n"), 
+         "elements must have nodes of the file, and there is no node 9"),
         (SQUARE.replace("1.", "x") + SHELL, f"{NUMBERS} (line 1: could not convert string to float: 'X')"),
         (SQUARE, "the file must have elements with faces"),
     ],
@@ -195,7 +196,8 @@ REFUSED = {
     ],
     "a.mesh": [
         (f"{MEDIT}EdgesP2\n1\n1 2 3 1\n", CUT),
-        (f"{MEDIT}Triangles\n1\n1 1 9 1\n", "a cell must have nodes of the file, which has 4"),
+        (f"{MEDIT}Triangles\n1\n1 1 9 1\n", 
+         "a cell must have nodes of the file, from 0 to 3, not 8 (cell 1)"),
     ],
 }  # fmt: skip
 
