@@ -38,27 +38,21 @@ DATA_SETS: Final = ("PolyData", "UnstructuredGrid", "StructuredGrid", "Rectiline
 
 # Cells by the numbers of their types.
 
-EMPTY: Final = 0
-STRIP: Final = 6
-ANY_POLYGON: Final = 7
-PIXEL: Final = 8
-VOXEL: Final = 11
-POLYHEDRON: Final = 42
+EMPTY, STRIP, ANY_POLYGON, PIXEL, VOXEL, POLYHEDRON = 0, 6, 7, 8, 11, 42
 SHAPE_OF_EDGES: Final = {3: "triangle", 4: "quad", 6: "tetra", 8: "pyramid", 9: "wedge", 12: "hexahedron"}
 """The shape of a cell by the number of its edges."""
 
 ALONG_AXES: Final = [0, 1, 3, 2, 4, 5, 7, 6]
 """The order in which the corners of a pixel or voxel go around it."""
 
-DUPLICATE: Final = 1
-HIDDEN: Final = 32
+DUPLICATE, HIDDEN = 1, 32
 """The bits of cells that are elsewhere, too, and of those that are not shown."""
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
     """The surface of a VTK file of the kind "legacy" or "xml". Raises ForeignRefusal."""
     window = listening()
-    data, sentences = (_xml if kind == "xml" else _legacy)(path)
+    data, sentences = _xml(path) if kind == "xml" else _legacy(path), list[str]()
     refuse_printed(window, path)
     # VTK prints of arrays that have other numbers of values than there are nodes or cells.
     data.CheckAttributes()
@@ -100,7 +94,7 @@ def _ghosts(data: Any) -> AnyArray:
     )
 
 
-def _legacy(path: Path) -> tuple[Any, list[str]]:
+def _legacy(path: Path) -> Any:
     """The data set of a legacy file, with all of its arrays."""
     data = read_whole(path, 1)
     if b"ASCII" in data[:HEAD].upper().split(b"DATASET")[0]:
@@ -112,10 +106,10 @@ def _legacy(path: Path) -> tuple[Any, list[str]]:
     for what in ("Scalars", "Vectors", "Tensors", "Normals", "Fields", "TCoords", "ColorScalars"):
         getattr(reader, f"ReadAll{what}On")()
     reader.Update()
-    return reader.GetOutputDataObject(0), []
+    return reader.GetOutputDataObject(0)
 
 
-def _xml(path: Path) -> tuple[Any, list[str]]:
+def _xml(path: Path) -> Any:
     """The data set of an XML file, of all pieces. Raises ForeignRefusal for a type with other files."""
     match = XML_TYPE.search(read_head(path))
     type_ = match[1].decode("latin-1") if match else "none"
@@ -128,9 +122,7 @@ def _xml(path: Path) -> tuple[Any, list[str]]:
     reader = getattr(vtkIOXML, f"vtkXML{type_}Reader")()
     reader.SetFileName(str(path))
     reader.Update()
-    steps = reader.GetNumberOfTimeSteps()
-    sentences = [f"took the first of {steps:,} time steps"] if steps > 1 else []
-    return reader.GetOutputDataObject(0), sentences
+    return reader.GetOutputDataObject(0)
 
 
 # What VTK prints.
@@ -175,12 +167,10 @@ def _outer(data: Any, sentences: list[str]) -> tuple[Any, bool]:
     """
     extent = data.GetExtent()
     sides = tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True))
-    wanted, given = (np.prod(sides),), (data.GetNumberOfPoints(),)
     if data.IsA("vtkRectilinearGrid"):
         axes = (data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates())
-        wanted, given = sides, tuple(axis.GetNumberOfTuples() for axis in axes)
-    if wanted != given:
-        raise ForeignRefusal(f"a grid of {sides} nodes must have as many, not {given}")
+        if sides != tuple(axis.GetNumberOfTuples() for axis in axes):
+            raise ForeignRefusal(f"a grid of {sides} nodes must have as many coordinates along its axes")
     geometry = vtkGeometryFilter()
     geometry.SetInputData(data)
     geometry.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
@@ -188,7 +178,9 @@ def _outer(data: Any, sentences: list[str]) -> tuple[Any, bool]:
     outer = geometry.GetOutput()
     if min(sides) == 1 or not outer.GetNumberOfPolys():
         return outer, False
-    sentences += surface_sentences(data.GetNumberOfCells(), given[0] - outer.GetNumberOfPoints())
+    sentences += surface_sentences(
+        data.GetNumberOfCells(), data.GetNumberOfPoints() - outer.GetNumberOfPoints()
+    )
     quads = _lists(outer.GetPolys())[0].reshape(-1, 4)
     a, b, c, d = (places_of(outer)[corners].T for corners in quads.T)
     # A left-handed grid is inside out.

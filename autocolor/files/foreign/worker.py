@@ -2,8 +2,8 @@
 
 It is started as `python -m autocolor.files.foreign.worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`.
 The module MODULE of this folder calls the library, SIZE is the number of bytes to read, and LIMIT a factor
-for the budget. Once the library is loaded, the system limits memory and the size of the result. If the
-file cannot be read, the exit code is FAILED and the result a sentence.
+for the budget. Once the library is loaded, the system limits memory and the size of the result. If the file
+cannot be read, the exit code is FAILED and the result a sentence.
 """
 
 from __future__ import annotations
@@ -30,34 +30,31 @@ def main(arguments: list[str]) -> int:
     try:
         module = importlib.import_module(f"autocolor.files.foreign.{name}")
         with allowing(float(factor)):
-            limit(int(size))
+            limit_memory(most_memory(int(size)))
             save(module.read(Path(mesh), kind), Path(result))
         return 0
+    except (InputError, ForeignRefusal) as error:
+        reason = str(error)
+    except MemoryError:
+        reason = str(unreadable(library, "it needs more memory than its size and --limit allow"))
     except (Exception, SystemExit) as error:
-        Path(result).write_text(sentence_of(error, library), "utf-8", "replace")
-        return FAILED
+        reason = str(error)[:300]
+        if not reason or (
+            type(error).__module__ == "builtins" and not isinstance(error, (OSError, ValueError))
+        ):
+            # Such as a KeyError, which says nothing to a user.
+            reason = f"it is cut short or damaged, or has what {library} does not know"
+        reason = str(unreadable(library, reason))
+    Path(result).write_text(" ".join(reason.split()), "utf-8", "replace")
+    return FAILED
 
 
-def sentence_of(error: BaseException, library: str) -> str:
-    """The message of an exception in one line; it begins with the name of the mesh file or has none."""
-    text = " ".join(str(error).split())
-    if isinstance(error, (ForeignRefusal, InputError)):
-        return text
-    if isinstance(error, MemoryError):
-        text = "it needs more memory than its size and --limit allow"
-    elif not text or (not isinstance(error, (OSError, ValueError)) and type(error).__module__ == "builtins"):
-        # Such as a KeyError, which says nothing to a user.
-        text = f"it is cut short or damaged, or has what {library} does not know"
-    return str(unreadable(library, text[:300]))
-
-
-def limit(size: int) -> None:
-    """Limit the memory and the result of this process for a file of `size` bytes."""
+def limit_memory(memory: int) -> None:
+    """Limit the memory and the result of this process to some bytes."""
     if sys.platform == "win32":
         return
     import resource
 
-    memory = most_memory(size)
     for kind, most in (
         (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, memory), (resource.RLIMIT_CORE, 0),
     ):  # fmt: skip

@@ -168,7 +168,7 @@ REFUSED = {
         (f"{PART}*ASSEMBLY\n{SHELL}", "elements of type S4 must be in a *PART, not in *ASSEMBLY (line 11)"),
         (SQUARE + "*ELEMENT, TYPE=S7\n1, 1, 2, 3, 4\n", "element type 'S7' is not known (line 6)"),
         (SQUARE + "*ELEMENT, TYPE=S4\n1, 1, 2, 3\n", "elements of type S4 must have 4 nodes (line 6)"),
-        (SQUARE + SHELL.replace(" 4\n", " 9\n"), 
+        (SQUARE + SHELL.replace(" 4\n", " 9\n"),
          "elements must have nodes of the file, and there is no node 9"),
         (SQUARE.replace("1.", "x") + SHELL, f"{NUMBERS} (line 1: could not convert string to float: 'X')"),
         (SQUARE, "the file must have elements with faces"),
@@ -196,7 +196,7 @@ REFUSED = {
     ],
     "a.mesh": [
         (f"{MEDIT}EdgesP2\n1\n1 2 3 1\n", CUT),
-        (f"{MEDIT}Triangles\n1\n1 1 9 1\n", 
+        (f"{MEDIT}Triangles\n1\n1 1 9 1\n",
          "a cell must have nodes of the file, from 0 to 3, not 8 (cell 1)"),
     ],
 }  # fmt: skip
