@@ -6,6 +6,7 @@ Each of `vtk`, `gltf`, `three_mf` and `solvers` has a function
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,9 +17,19 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE, Color, printable, shown
-from autocolor.files.meshes.repair import RawPolygons, different, printable_name
+from autocolor.files.meshes.repair import (
+    MeshReport,
+    Placement,
+    RawPolygons,
+    different,
+    printable_name,
+    repaired,
+)
 from autocolor.immutable import read_only
-from autocolor.scene.scalar import NODE, MeshScalar
+from autocolor.scene.defaults import created_surface
+from autocolor.scene.geometry.normals import NodeNormals
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import MeshScalar
 
 REMEDY: Final = "correct the file, or write it as OBJ or PLY"
 
@@ -99,61 +110,51 @@ def joined(parts: Sequence[Part], sentences: Sequence[str], colors: Mapping[str,
     return ForeignMesh(polygons, tuple(sentences), materials, colors)
 
 
-# The archive of numpy that a mesh comes back in.
-
-ARRAYS: Final = ("coordinates", "corners", "corner_counts", "part_numbers")
-NORMALS: Final = ("normals", "corner_normals")
-
-
-def save(mesh: ForeignMesh, result: Path) -> None:
-    """Write a mesh as an archive."""
-    polygons = mesh.polygons
-    scalars = [(each.name, each.of) for each in polygons.scalars]
-    header = (polygons.part_names, mesh.sentences, mesh.material_of_part, mesh.colors, scalars)
-    names = ARRAYS if polygons.normals is None else ARRAYS + NORMALS
-    arrays: dict[str, AnyArray] = {name: vars(polygons)[name] for name in names}
-    arrays |= {f"scalar_{number}": each.values for number, each in enumerate(polygons.scalars)}
-    with open(result, "wb") as file:
-        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **arrays)
-
-
-def loaded(result: Path) -> ForeignMesh:
-    """The mesh of an archive, in which all numbers of nodes, corners and parts are right.
-
-    Raises ForeignRefusal for coordinates that a mesh cannot have, and ValueError, KeyError and others for a
-    damaged archive.
-    """
-    with np.load(result, allow_pickle=False) as file:
-        header = json.loads(str(file["header"]))
-        arrays = {name: file[name] for name in file.files if name != "header"}
-    coordinates, normals = arrays["coordinates"], arrays.get("normals")
-    corners, counts, parts = (arrays[name].astype(np.intp) for name in ARRAYS[1:])
+def report_of(mesh: ForeignMesh, name: str, placement: Placement) -> MeshReport:
+    """The mesh of a file of this name, repaired. Raises ForeignRefusal, and InputError if nothing is left."""
+    coordinates = mesh.polygons.coordinates
     wrong = np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))
     if len(wrong):
         raise ForeignRefusal(
             "the coordinates of a node must be finite and at most 1e30 in size, not"
             f" {shown(coordinates[wrong[0]].tolist())} (node {wrong[0] + 1:,})"
         )
-    names, sentences, material_of_part, colors, rows = header
+    report = repaired(mesh.polygons, name, placement, skipped=mesh.sentences)
+    names = [name for name in dict.fromkeys(mesh.material_of_part.values()) if name in mesh.colors]
+    materials = tuple(created_surface(name, mesh.colors[name]) for name in names)
+    return dataclasses.replace(report, material_of_part=mesh.material_of_part, materials=materials)
+
+
+# The archive of numpy that a mesh comes back in.
+
+TABLES: Final = ("coordinates", "node_numbers", "part_numbers")
+
+
+def save(report: MeshReport, result: Path) -> None:
+    """Write a mesh as an archive."""
+    mesh = report.mesh
+    scalars = [(each.name, each.of) for each in mesh.scalars]
+    colors = [(each.name, each.paint.object_color) for each in report.materials]
+    materials = dict(report.material_of_part)
+    header = (mesh.part_names, mesh.crease_angle, scalars, report.repairs, materials, colors)
+    arrays: dict[str, AnyArray] = {name: getattr(mesh, name) for name in TABLES}
+    arrays |= {f"scalar_{number}": each.values for number, each in enumerate(mesh.scalars)}
+    if mesh.own_normals is not None:
+        arrays |= {"normals": mesh.own_normals.vectors, "normal_numbers": mesh.own_normals.numbers}
+    with open(result, "wb") as file:
+        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **arrays)
+
+
+def loaded(result: Path) -> MeshReport:
+    """The mesh of an archive. Raises ValueError, KeyError and others if it is damaged or no sound mesh."""
+    with np.load(result, allow_pickle=False) as file:
+        arrays = dict(file)
+    names, angle, rows, repairs, materials, colors = json.loads(str(arrays["header"]))
+    tables = [read_only(arrays[name]) for name in TABLES]
     scalars = [MeshScalar(name, read_only(arrays[f"scalar_{at}"]), of) for at, (name, of) in enumerate(rows)]
-    of_corners = arrays.get("corner_normals")
-    shapes = [(coordinates, (len(coordinates), 3)), (corners, (counts.sum(),)), (parts, counts.shape)]
-    shapes += [(each.values, (len(coordinates if each.of == NODE else counts),)) for each in scalars]
-    if normals is not None and of_corners is not None:
-        shapes += [(normals, (len(normals), 3)), (of_corners, corners.shape)]
-    limits = [(corners, len(coordinates)), (counts, len(corners) + 1), (parts, len(names))]
-    if any(each.shape != shape for each, shape in shapes) or any(
-        ((each < 0) | (each >= end)).any() for each, end in limits
-    ):
-        raise ValueError("its numbers are of nodes, corners or parts that are not there")
-    polygons = RawPolygons(
-        coordinates.astype(np.float64),
-        corners,
-        counts,
-        parts,
-        tuple(names),
-        tuple(scalars),
-        normals=normals,
-        corner_normals=of_corners,
-    )
-    return ForeignMesh(polygons, tuple(printable(each[:300]) for each in sentences), material_of_part, colors)
+    normals = None
+    if "normals" in arrays:
+        normals = NodeNormals(read_only(arrays["normals"]), read_only(arrays["normal_numbers"]))
+    mesh = Mesh(*tables, tuple(names), angle, tuple(scalars), normals)
+    surfaces = tuple(created_surface(name, (red, green, blue)) for name, (red, green, blue) in colors)
+    return MeshReport(mesh, tuple(printable(each[:300]) for each in repairs), materials, surfaces)

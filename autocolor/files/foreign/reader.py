@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib.util
+import json
 import os
 import re
 import subprocess
@@ -30,11 +31,10 @@ from autocolor.checks import printable
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import GROWTH
 from autocolor.files.foreign.gltf_document import size_of_gltf
-from autocolor.files.foreign.mesh import REMEDY, ForeignMesh, ForeignRefusal, loaded
+from autocolor.files.foreign.mesh import REMEDY, loaded
 from autocolor.files.foreign.solver_text import size_of_text
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
 from autocolor.files.reading import opened, require_size
-from autocolor.scene.defaults import created_surface
 
 WORKER: Final = (sys.executable, "-P", "-m", "autocolor.files.foreign.worker")
 """The command; -P keeps modules in the current folder, which may be a stranger's, from being imported."""
@@ -62,24 +62,22 @@ def size_of_file(path: Path) -> int:
         return status.st_size
 
 
-def read_in_own_process(read_as: ForeignFormat, path: Path, size: int) -> ForeignMesh:
+def read_in_own_process(read_as: ForeignFormat, path: Path, size: int, placement: Placement) -> MeshReport:
     """The mesh of a file of `size` bytes that a library reads in its own process. Raises InputError."""
     library, seconds, nowhere = read_as.library, most_seconds(size), subprocess.DEVNULL
     paths = [str(Path(autocolor.files.__path__[0]).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
     # Each thread reserves memory, which is limited.
     one = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "VTK_SMP_MAX_THREADS"), "1")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **one}
+    code = None
     with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
         result, file = Path(folder) / "mesh.npz", os.fspath(path.absolute())
-        names = (library, read_as.module, read_as.kind, file, os.fspath(result))
+        numbers = (str(size), str(validated_limit(None)), json.dumps(dataclasses.astuple(placement)))
         try:
             code = subprocess.call(
-                (*WORKER, *names, str(size), str(validated_limit(None))),
+                (*WORKER, library, read_as.module, read_as.kind, file, os.fspath(result), *numbers),
                 stdin=nowhere, stdout=nowhere, stderr=nowhere, env=environment, timeout=seconds,
             )  # fmt: skip
-            if code == FAILED:
-                sentence = printable(result.read_text("utf-8", "replace")[:2000])
-                raise InputError(sentence if sentence.startswith(path.name) else f"{path.name}: {sentence}")
             if code == 0:
                 require_size(path.name, result.stat().st_size, GROWTH)
                 return loaded(result)
@@ -89,13 +87,12 @@ def read_in_own_process(read_as: ForeignFormat, path: Path, size: int) -> Foreig
                 f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
                 " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
             ) from None
-        except InputError:
-            raise
-        except ForeignRefusal as error:
-            raise InputError(f"{path.name}: {error}") from None
         except (zipfile.BadZipFile, OSError, EOFError, ValueError, LookupError, TypeError) as error:
             reason = str(error)[:300]
-        raise InputError(f"{path.name}: {library} must give a whole mesh, and does not ({reason}); {REMEDY}")
+        sentence = f"{library} must give a whole mesh, and does not ({reason}); {REMEDY}"
+        if code == FAILED and result.is_file():
+            sentence = printable(result.read_text("utf-8", "replace")[:2000])
+    raise InputError(sentence if sentence.startswith(path.name) else f"{path.name}: {sentence}")
 
 
 LIBRARIES: Final = {
@@ -168,13 +165,6 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
             f' run: pip install "autocolor[{extra}]"'
         )
     require_size(path.name, size, read_as.growth)
-    mesh = read_in_own_process(read_as, path, size)
     if placement.up == "z" and read_as.up:
         placement = dataclasses.replace(placement, up=read_as.up)
-    report = repaired(mesh.polygons, path.name, placement, skipped=mesh.sentences)
-    names = [name for name in dict.fromkeys(mesh.material_of_part.values()) if name in mesh.colors]
-    return dataclasses.replace(
-        report,
-        material_of_part=dict(mesh.material_of_part),
-        materials=tuple(created_surface(name, mesh.colors[name]) for name in names),
-    )
+    return read_in_own_process(read_as, path, size, placement)

@@ -1,14 +1,16 @@
 """The process in which a library reads a file.
 
-It is started as `python -m autocolor.files.foreign.worker LIBRARY MODULE KIND MESH RESULT SIZE LIMIT`.
-The module MODULE of this folder calls the library, SIZE is the number of bytes to read, and LIMIT a factor
-for the budget. Once the library is loaded, the system limits memory and the size of the result. If the file
-cannot be read, the exit code is FAILED and the result a sentence.
+It is started as `python -m autocolor.files.foreign.worker` with the words that `reader` gives: the library,
+the module of this folder that calls it, the kind of file, the file, that of the result, the number of bytes
+to read, a factor for the budget and the fields of the placement in JSON. Once the library is loaded, the
+system limits memory and the size of the result. If the file cannot be read, the exit code is FAILED and the
+result a sentence.
 """
 
 from __future__ import annotations
 
 import importlib
+import json
 import os
 import sys
 import tempfile
@@ -17,13 +19,14 @@ from pathlib import Path
 
 from autocolor.budget import allowing
 from autocolor.errors import InputError
-from autocolor.files.foreign.mesh import ForeignRefusal, save, unreadable
+from autocolor.files.foreign.mesh import ForeignRefusal, report_of, save, unreadable
 from autocolor.files.foreign.reader import FAILED, most_memory
+from autocolor.files.meshes.repair import Placement
 
 
 def main(arguments: list[str]) -> int:
     """Read a file and write its mesh, or the reason of a failure. Returns the exit code."""
-    library, name, kind, mesh, result, size, factor = arguments
+    library, name, kind, mesh, result, size, factor, placement = arguments
     warnings.simplefilter("ignore")
     sys.dont_write_bytecode = True
     tempfile.tempdir = os.path.dirname(result)
@@ -31,7 +34,8 @@ def main(arguments: list[str]) -> int:
         module = importlib.import_module(f"autocolor.files.foreign.{name}")
         with allowing(float(factor)):
             limit_memory(most_memory(int(size)))
-            save(module.read(Path(mesh), kind), Path(result))
+            path, placed = Path(mesh), Placement(*json.loads(placement))
+            save(report_of(module.read(path, kind), path.name, placed), Path(result))
         return 0
     except (InputError, ForeignRefusal) as error:
         reason = str(error)

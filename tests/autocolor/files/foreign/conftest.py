@@ -14,12 +14,13 @@ import pytest
 from autocolor.files.meshes.repair import MeshReport
 
 PROGRAM = """
-import importlib, json, os, sys, types
+import dataclasses, importlib, json, os, sys, types
 import numpy as np
 from autocolor.errors import InputError
 from autocolor.files.foreign import worker
 from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal
 from autocolor.files.meshes.repair import RawPolygons
+from autocolor.scene.scalar import MeshScalar
 
 def read(path, kind):
     polygons = RawPolygons(np.eye(3), np.arange(3), np.array([3]), np.array([0]), ("p",))
@@ -67,7 +68,7 @@ def shared(worker: subprocess.Popen[str], monkeypatch: pytest.MonkeyPatch) -> No
     def exit_code(command: tuple[str, ...], **options: object) -> int:
         assert worker.stdin is not None
         assert worker.stdout is not None
-        print(json.dumps(command[-7:]), file=worker.stdin, flush=True)
+        print(json.dumps(command[-8:]), file=worker.stdin, flush=True)
         return int(worker.stdout.readline())
 
     monkeypatch.setattr(subprocess, "call", exit_code)

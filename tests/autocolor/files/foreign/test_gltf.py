@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from autocolor.files.foreign.gltf_document import completed, document, size_of_gltf
-from autocolor.files.foreign.reader import FOREIGN, read_in_own_process
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport, Placement
 from tests.autocolor.files.foreign.conftest import CUBE, SIDES, area_and_volume
@@ -205,12 +204,10 @@ def test_nodes_at_one_place_are_one_and_what_is_left_out_is_told(tmp_path: Path)
     file.json |= {"animations": [{}], "cameras": [{}, {}]}
     report = file.read(tmp_path)
     assert len(report.mesh.coordinates) == 8
-    (gltf,) = (each for each in FOREIGN if each.name == "glTF")
-    polygons = read_in_own_process(gltf, tmp_path / "a.gltf", 1).polygons
-    assert polygons.normals is not None
-    assert polygons.corner_normals is not None
-    at_corners = (polygons.coordinates[polygons.corners] - 0.5) / math.sqrt(0.75)
-    assert np.allclose(polygons.normals[polygons.corner_normals], at_corners)
+    mesh = read_mesh({"file": tmp_path / "a.gltf"}, Placement("x", normals="file")).mesh
+    assert mesh.own_normals is not None
+    at_corners = (mesh.coordinates[mesh.node_numbers] - 0.5) / math.sqrt(0.75)
+    assert np.allclose(mesh.own_normals.vectors[mesh.own_normals.numbers], at_corners)
     assert report.repairs == (
         "a.gltf: left out its animations, attributes of its own, cameras, colors of nodes and lights",
     )

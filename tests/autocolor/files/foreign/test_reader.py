@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
 import re
 import subprocess
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.budget import MEMORY, allowing
-from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.foreign import reader
-from autocolor.files.foreign.mesh import ForeignMesh, part_names_of
+from autocolor.files.foreign.mesh import part_names_of, save
 from autocolor.files.foreign.reader import (
     ForeignFormat,
     most_memory,
@@ -23,6 +25,10 @@ from autocolor.files.foreign.reader import (
     read_in_own_process,
 )
 from autocolor.files.formats import format_of, read_mesh
+from autocolor.files.meshes.repair import MeshReport, Placement
+from autocolor.scene.geometry.normals import NodeNormals
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.foreign.conftest import OWN
 from tests.autocolor.files.foreign.test_gltf import Gltf
 from tests.autocolor.files.foreign.test_solvers import (
@@ -46,39 +52,30 @@ CANNOT = "a.fake: fake must be able to read it, and cannot ({})" + END
 MUST = "a.fake: fake must give a whole mesh, and does not ({})" + END
 
 
-def read(folder: Path, body: str) -> ForeignMesh:
+def read(folder: Path, body: str) -> MeshReport:
     """The mesh that a library gives, which runs some lines."""
     path = folder / "a.fake"
     path.write_text(body)
-    return read_in_own_process(FAKE, path, 10_000)
-
-
-def mesh(**changes: str) -> str:
-    """Lines that give a mesh of a triangle, some of whose arrays are others."""
-    rows = {"coordinates": "np.eye(3)", "corners": "[0, 1, 2]", "corner_counts": "[3]", "part_numbers": "[0]"}
-    arrays = ", ".join(f"{name}=np.array({row})" for name, row in (rows | changes).items())
-    return f"mesh = ForeignMesh(RawPolygons({arrays}, part_names=('p',)))"
+    return read_in_own_process(FAKE, path, 10_000, Placement("x", 2.0, normals="file"))
 
 
 def test_a_mesh_comes_back_and_what_a_library_prints_goes_nowhere(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reader, "WORKER", OWN)
-    rows = {"normals": "np.eye(3) * 2", "corner_normals": "[2, -1, 0]"}
-    printing = "import os; print('noise' * 100000); os.write(2, b'noise'); os.write(1, b'noise')\n"
-    polygons = read(
-        tmp_path, printing + mesh(coordinates=f"np.eye(3) * -{LARGEST_COORDINATE}", **rows)
-    ).polygons
+    report = read(
+        tmp_path,
+        "import os; print('noise' * 100000); os.write(2, b'noise'); os.write(1, b'noise')\n"
+        "polygons = dataclasses.replace(mesh.polygons, normals=np.ones((3, 3)), corner_normals=np.arange(3),"
+        " scalars=(MeshScalar('a', np.arange(3.0), 'node'),))\n"
+        "mesh = ForeignMesh(polygons, ('left out',), {'p': 'red'}, {'red': (255, 0, 0), 'blue': (9, 9, 9)})",
+    )
     assert capfd.readouterr() == ("", "")
-    assert polygons.part_names == ("p",)
-    assert polygons.coordinates.min() == -LARGEST_COORDINATE
-    assert polygons.normals is not None
-    assert polygons.corner_normals is not None
-    assert polygons.normals[polygons.corner_normals[[0, 2]]].tolist() == [[0, 0, 2], [2, 0, 0]]
-
-
-NODE_9 = "the coordinates of a node must be finite and at most 1e30 in size, not {}"
-ABSENT = MUST.format("its numbers are of nodes, corners or parts that are not there")
+    assert report.mesh.coordinates.tolist() == [[0, 0, 2], [2, 0, 0], [0, 2, 0]]
+    assert report.mesh.own_normals is not None
+    assert [(each.name, each.values.tolist()) for each in report.mesh.scalars] == [("a", [0, 1, 2])]
+    assert (report.repairs, report.material_of_part) == (("a.fake: left out",), {"p": "red"})
+    assert [(each.name, each.paint.object_color) for each in report.materials] == [("red", (255, 0, 0))]
 
 
 @pytest.mark.usefixtures("shared")
@@ -93,20 +90,9 @@ ABSENT = MUST.format("its numbers are of nodes, corners or parts that are not th
         ("import os; os.abort()", MUST.format("it crashed (code -6)")),
         ("mesh = [bytes(1 << 20) for _ in range(5000)]",
          CANNOT.format("it needs more memory than its size and --limit allow")),
-        (mesh(coordinates="np.full((3, 3), np.nan)"),
-         f"a.fake: {NODE_9.format('[nan, nan, nan] (node 1)')}{END}"),
-        (mesh(coordinates="[[0, 0, 0], [0, 0, 1], [0, np.nextafter(1e30, np.inf), 0]]"),
-         f"a.fake: {NODE_9.format('[0.0, 1.0000000000000002e+30, 0.0] (node 3)')}{END}"),
-        *(
-            (mesh(**changes), ABSENT)
-            for changes in (
-                {"coordinates": "np.zeros((4, 2))"}, {"corners": "[0, 1, 3]"}, {"corners": "[0, 1, -1]"},
-                {"corner_counts": "[4]"}, {"corner_counts": "[-1, 4]", "part_numbers": "[0, 0]"},
-                {"part_numbers": "[1]"}, {"part_numbers": "[-1]"}, {"part_numbers": "[0, 0]"},
-                {"corner_normals": "[0, 0]", "normals": "np.eye(3)"},
-                {"corner_normals": "[0, 0, 0]", "normals": "np.zeros((4, 2))"},
-            )
-        ),
+        ("mesh.polygons.coordinates[2, 1] = np.nextafter(1e30, np.inf)",
+         "a.fake: the coordinates of a node must be finite and at most 1e30 in size, not"
+         f" [0.0, 1.0000000000000002e+30, 1.0] (node 3){END}"),
     ],
     ids=lambda text: text[-40:],
 )  # fmt: skip
@@ -116,11 +102,33 @@ def test_a_library_may_fail_in_any_way_and_nothing_is_believed(
     assert refusal(read, tmp_path, body) == sentence
 
 
-@pytest.mark.parametrize("data", [b"", b"PK", b"\x80\x04N."])
-def test_what_is_no_mesh_is_refused(tmp_path: Path, data: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        subprocess, "call", lambda command, **_: Path(command[-3]).write_bytes(data) - len(data)
-    )
+@pytest.mark.parametrize(
+    ("table", "values"),
+    [
+        ("", []), ("header", ["[]"]), ("coordinates", np.full((3, 3), np.nan)),
+        ("coordinates", np.zeros((4, 2))), ("node_numbers", [[0, 1, 2, -1]]),
+        ("part_numbers", [1]), ("normal_numbers", [[0, 0, 0, 9]]), ("normals", np.zeros((3, 3), np.float32)),
+        ("scalar_0", [1.0]),
+    ],
+)  # fmt: skip
+def test_what_is_no_mesh_is_refused(
+    tmp_path: Path, table: str, values: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mesh = Mesh(np.eye(3), np.array([[0, 1, 2, 2]]), scalars=(MeshScalar("a", np.zeros(3)),))
+    normals = NodeNormals(np.eye(3, dtype=np.float32), mesh.node_numbers)
+
+    def call(command: tuple[str, ...], **options: object) -> int:
+        result = Path(command[-4])
+        save(MeshReport(dataclasses.replace(mesh, own_normals=normals)), result)
+        with np.load(result) as file:
+            arrays = dict(file)
+        if table:
+            np.savez(result, **arrays | {table: np.array(values)})
+        else:
+            result.write_bytes(b"PK")
+        return 0
+
+    monkeypatch.setattr(subprocess, "call", call)
     assert refusal(read, tmp_path, "").startswith("a.fake: fake must give a whole mesh, and does not (")
 
 

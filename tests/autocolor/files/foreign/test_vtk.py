@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from autocolor.errors import InputError
-from autocolor.files.foreign.reader import FOREIGN, read_in_own_process
 from autocolor.files.formats import read_mesh
+from autocolor.files.meshes.repair import Placement
 from tests.autocolor.files.foreign.conftest import CUBE, SIDES, area_and_volume
 from tests.autocolor.files.refusals import refusal
 from tests.tables import first
@@ -180,10 +180,9 @@ def test_what_is_left_out_is_told(tmp_path: Path) -> None:
     assert {each.name: each.values.tolist()[:2] for each in report.mesh.scalars} == {
         "heat": [0, 1], "v magnitude": [5, 5], "row": [2, 3],
     }  # fmt: skip
-    polygons = read_in_own_process(FOREIGN[1], tmp_path / "set.vtp", 1).polygons
-    assert polygons.normals is not None
-    assert polygons.corner_normals is not None
-    assert polygons.normals[polygons.corner_normals].tolist() == [[0, 0, 2]] * len(polygons.corners)
+    mesh = read_mesh({"file": tmp_path / "set.vtp"}, Placement(normals="file")).mesh
+    assert mesh.own_normals is not None
+    assert mesh.own_normals.vectors[mesh.own_normals.numbers].tolist() == [[[0, 0, 1]] * 4] * 5
     assert read_mesh({"file": by_vtk(tmp_path, data_set("higher order"), "vtu")}).repairs == (
         "set.vtu: took the corners alone of cells of the type 22: 1",
         "set.vtu: took the corners alone of cells of the type 25: 1",
