@@ -10,9 +10,9 @@ from __future__ import annotations
 import binascii
 import json
 import math
-import os
 import re
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import unquote, unquote_to_bytes
@@ -36,7 +36,7 @@ def document(path: Path) -> tuple[Row, bytes]:
     """The JSON of a glTF file, and the binary chunk of a GLB file. Raises InputError if either is damaged."""
     data, binary = read_whole(path, 1), b""
     if data.startswith(b"glTF"):
-        # A GLB file begins with its version, its length, and a chunk of JSON with its size.
+        # Its version, its length, and a chunk of JSON with its size.
         version, length, size, kind = struct.unpack_from("<III4s", data.ljust(20, b"\0"), 4)
         binary = data[28 + size : length]
         if version != 2 or kind != b"JSON" or length > len(data) or size > len(data) - 20:
@@ -49,33 +49,29 @@ def document(path: Path) -> tuple[Row, bytes]:
         described = bounded_json(data, MOST_VALUES)
         if not isinstance(described, dict):
             raise ValueError(f"a {type(described).__name__}")
+        return described, binary
     except ValueError as error:
         reason = " ".join(str(error).split())[:100]
         raise InputError(
-            f"{path.name}: a glTF file must describe its scene in JSON, not {reason}; write it again"
+            f"{path.name}: a glTF file must describe its scene in JSON ({reason}); write it again"
         ) from None
-    return described, binary
 
 
-def buffer_files(path: Path, described: Row) -> list[Path | None]:
+def buffer_files(path: Path, described: Row) -> Iterator[Path | None]:
     """The files of the buffers, in the folder of a glTF file; None for buffers within the file.
 
     Raises InputError for an address, a file outside of the folder, or a file that is not there.
     """
-    files: list[Path | None] = []
     for number, row in enumerate(rows(described, "buffers")):
-        uri = row.get("uri")
-        if uri is None or (isinstance(uri, str) and uri[:5].lower() == "data:"):
-            files.append(None)
-            continue
-        reasons: list[str] = []
-        named = path_within(reasons, path.parent, unquote(uri) if isinstance(uri, str) else "")
-        if named is not None and not named.is_file():
-            reasons.append(f"must be in its folder, where there is no file {named.name!r}; copy it there")
-        if reasons:
-            raise InputError(f"{path.name}: buffers {number}: it {reasons[0]}")
-        files.append(named)
-    return files
+        uri, reasons = row.get("uri"), list[str]()
+        if uri is None or str(uri)[:5].lower() == "data:":
+            yield None
+        else:
+            named = path_within(reasons, path.parent, unquote(str(uri)))
+            if named is None or not named.is_file():
+                reasons.append("must be in its folder, and is not there; copy it there")
+                raise InputError(f"{path.name}: buffers {number}: it {reasons[0]}")
+            yield named
 
 
 def rows(row: Row, key: str) -> list[Row]:
@@ -87,8 +83,8 @@ def rows(row: Row, key: str) -> list[Row]:
 def size_of_gltf(path: Path) -> int:
     """The bytes of a glTF file and of the buffers in its folder. Raises InputError."""
     described, _ = document(path)
-    files = buffer_files(path, described)
-    return status_of(path).st_size + sum(os.stat(each).st_size for each in files if each is not None)
+    files = [path, *filter(None, buffer_files(path, described))]
+    return sum(status_of(each).st_size for each in files)
 
 
 # Extensions. Most concern materials and textures, which are left out.
@@ -130,9 +126,8 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
     leaves out at times.
     """
     buffers, views = dict[int, bytes](), dict[int, tuple[memoryview, int]]()
-    for number, (row, named) in enumerate(
-        zip(rows(described, "buffers"), buffer_files(path, described), strict=True)
-    ):
+    for number, named in enumerate(buffer_files(path, described)):
+        row = described["buffers"][number]
         uri, least = row.get("uri"), row["byteLength"]
         data = binary if uri is None else _data_of(uri) if named is None else read_whole(named, 1)
         if len(data) < least:

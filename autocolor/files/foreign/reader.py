@@ -125,6 +125,7 @@ class ForeignFormat:
 
 
 XML_SUFFIXES: Final = (".vtp", ".vtu", ".vts", ".vtr", ".vti")
+NASTRAN: Final = (".bdf", ".nas", ".fem")
 
 FOREIGN: Final = (
     ForeignFormat("VTK", (".vtk",), "VTK", "vtk", "legacy", 10, re.compile(rb"(?i)# vtk datafile").match),
@@ -136,17 +137,9 @@ FOREIGN: Final = (
     ),
     # It is packed.
     ForeignFormat("3MF", (".3mf",), "lib3mf", "three_mf", "", 100, up="z"),
-    ForeignFormat("Abaqus", (".inp",), "meshio", "solvers", "abaqus", 8, size_of=size_of_text("abaqus")),
+    ForeignFormat("Abaqus", (".inp",), "meshio", "solvers", "abaqus", 8, size_of=size_of_text),
     ForeignFormat("Gmsh", (".msh",), "meshio", "solvers", "gmsh", 8),
-    ForeignFormat(
-        "Nastran",
-        (".bdf", ".nas", ".fem"),
-        "meshio",
-        "solvers",
-        "nastran",
-        8,
-        size_of=size_of_text("nastran"),
-    ),
+    ForeignFormat("Nastran", NASTRAN, "meshio", "solvers", "nastran", 8, size_of=size_of_text),
     ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "solvers", "medit", 8),
     ForeignFormat("UGRID", (".ugrid",), "meshio", "solvers", "ugrid", 8),
 )

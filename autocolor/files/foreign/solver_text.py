@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import re
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final
 
@@ -55,8 +55,8 @@ def assembled(records: Iterable[Record], skipped: Counter[str]) -> tuple[Floats,
     row_of = {number: row for row, number in enumerate(nodes)}
     try:
         blocks = [
-            (key[0], np.array([[row_of[node] for node in each] for each in several]), parts[key])
-            for key, several in elements.items()
+            (key[0], np.array([[row_of[node] for node in each] for each in numbers]), parts[key])
+            for key, numbers in elements.items()
         ]
     except KeyError as error:
         raise ForeignRefusal(f"elements must have nodes of the file, and there is no node {error}") from None
@@ -73,22 +73,19 @@ def _number(word: str) -> float:
 
 # Texts that include others.
 
-INCLUDE: Final = {
-    "abaqus": re.compile(r"\s*\*\s*include\s*,\s*input\s*=(.*)", re.I),
-    "nastran": re.compile(r"\s*include\s+(.*)", re.I),
-}
+INCLUDE: Final = re.compile(r"\s*(?:\*\s*include\s*,\s*input\s*=|include\s)(.*)", re.I)
 
 MOST_FILES: Final = 100
 """Limit: files that a text includes, and that these include; a file may include itself."""
 
 
-def size_of_text(kind: str) -> Callable[[Path], int]:
-    """A function that gives the letters of a text of INCLUDE and of the files that it includes."""
-    return lambda path: sum(len(line) + 1 for _, line in _lines(path, kind, []))
+def size_of_text(path: Path) -> int:
+    """The letters of a text and of the files that it includes. Raises InputError."""
+    return sum(len(line) + 1 for _, line in _lines(path, []))
 
 
-def _lines(path: Path, kind: str, files: list[Path]) -> Iterator[tuple[str, str]]:
-    """The places and lines of a text of INCLUDE, and of the files that it includes, added to `files`.
+def _lines(path: Path, files: list[Path]) -> Iterator[tuple[str, str]]:
+    """The places and lines of a text, and of the files that it includes, added to `files`.
 
     Raises InputError for an included file that is not in the folder of the first file.
     """
@@ -98,13 +95,12 @@ def _lines(path: Path, kind: str, files: list[Path]) -> Iterator[tuple[str, str]
         raise InputError(f"{main.name}: it must include at most {MOST_FILES} files, not more; join them")
     with opened(path) as (file, _), io.TextIOWrapper(file, "utf-8-sig", "replace") as lines:
         for number, line in enumerate(lines, 1):
-            place = f"line {number}" if path == main else f"{path.name}, line {number}"
-            if match := INCLUDE[kind].match(line):
-                problems: list[str] = []
+            place, problems = f"line {number}" if path == main else f"{path.name}, line {number}", list[str]()
+            if match := INCLUDE.match(line):
                 included = path_within(problems, main.parent, match[1].strip().strip("'\""))
                 if included is None:
                     raise InputError(f"{main.name}, {place}: an included file {problems[0]}")
-                yield from _lines(included, kind, files)
+                yield from _lines(included, files)
             else:
                 yield place, line.strip("\n")
 
@@ -130,7 +126,7 @@ TYPE: Final = re.compile(
 def _keywords(path: Path) -> Iterator[tuple[str, list[str], list[list[str]]]]:
     """The place, words and rows of each keyword, without comments and empty lines."""
     place, keyword, rows = "", [""], list[list[str]]()
-    for here, line in _lines(path, "abaqus", []):
+    for here, line in _lines(path, []):
         words = [word.strip() for word in line.split(",")]
         if not line.strip() or line.lstrip().startswith("**"):
             continue
@@ -208,7 +204,7 @@ CARD: Final = re.compile(
 def _cards(path: Path) -> Iterator[tuple[str, str, list[str]]]:
     """The place, name and fields of each card of a text: fields are free, or of 8 or 16 letters."""
     place, name, fields, mark, is_open = "", "", list[str](), "", False
-    for here, line in _lines(path, "nastran", []):
+    for here, line in _lines(path, []):
         text = line.split("$")[0].expandtabs(8).rstrip().upper()
         if text.startswith("ENDDATA"):
             is_open = False

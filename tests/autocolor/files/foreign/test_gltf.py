@@ -256,8 +256,7 @@ DRACO = "KHR_draco_mesh_compression"
             for uri, told in (
                 ("http://x", "the name of a file, not the address 'http://x'; fetch it and name the file"),
                 ("%2e%2e/a", "the name of a file in the scene's folder, not '../a'; copy the file there"),
-                (7, "the name of a file, not ''; correct it"),
-                ("b%20c", "in its folder, where there is no file 'b c'; copy it there"),
+                ("b%20c", "in its folder, and is not there; copy it there"),
             )
         ),
     ],
@@ -284,7 +283,7 @@ def glb(version: int = 2, length: int = 22, size: int = 2, kind: bytes = b"JSON"
     return struct.pack("<4sIII4s", b"glTF", version, length, size, kind) + b"[]"
 
 
-NO_JSON = "a.gltf: a glTF file must describe its scene in JSON, not {}; write it again"
+NO_JSON = "a.gltf: a glTF file must describe its scene in JSON ({}); write it again"
 CUT = (
     "a.gltf: a binary glTF file must have version 2, its own length and a chunk of JSON first; the file is"
     " cut short or damaged"
