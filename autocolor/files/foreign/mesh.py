@@ -150,11 +150,11 @@ def loaded(result: Path) -> MeshReport:
     with np.load(result, allow_pickle=False) as file:
         arrays = dict(file)
     names, angle, rows, repairs, materials, colors = json.loads(str(arrays["header"]))
-    tables = [read_only(arrays[name]) for name in TABLES]
+    nodes, polygons, parts = (read_only(arrays[name]) for name in TABLES)
     scalars = [MeshScalar(name, read_only(arrays[f"scalar_{at}"]), of) for at, (name, of) in enumerate(rows)]
     normals = None
     if "normals" in arrays:
         normals = NodeNormals(read_only(arrays["normals"]), read_only(arrays["normal_numbers"]))
-    mesh = Mesh(*tables, tuple(names), angle, tuple(scalars), normals)
+    mesh = Mesh(nodes, polygons, parts, tuple(names), angle, tuple(scalars), normals)
     surfaces = tuple(created_surface(name, (red, green, blue)) for name, (red, green, blue) in colors)
     return MeshReport(mesh, tuple(printable(each[:300]) for each in repairs), materials, surfaces)

@@ -3,7 +3,7 @@
 It is started as `python -m autocolor.files.foreign.worker` with the words that `reader` gives: the library,
 the module of this folder that calls it, the kind of file, the file, that of the result, the number of bytes
 to read, a factor for the budget and the fields of the placement in JSON. Once the library is loaded, the
-system limits memory and the size of the result. If the file cannot be read, the exit code is FAILED and the
+system limits memory. If the file cannot be read, the exit code is FAILED and the
 result a sentence.
 """
 
@@ -54,17 +54,14 @@ def main(arguments: list[str]) -> int:
 
 
 def limit_memory(memory: int) -> None:
-    """Limit the memory and the result of this process to some bytes."""
+    """Limit the memory of this process to some bytes."""
     if sys.platform == "win32":
         return
     import resource
 
-    for kind, most in (
-        (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, memory), (resource.RLIMIT_CORE, 0),
-    ):  # fmt: skip
-        allowed = resource.getrlimit(kind)[1]
-        most = most if allowed == resource.RLIM_INFINITY else min(most, allowed)
-        resource.setrlimit(kind, (most, most))
+    most = resource.getrlimit(resource.RLIMIT_AS)[1]
+    memory = memory if most == resource.RLIM_INFINITY else min(memory, most)
+    resource.setrlimit(resource.RLIMIT_AS, (memory, most))
 
 
 if __name__ == "__main__":

@@ -231,31 +231,25 @@ DRACO = "KHR_draco_mesh_compression"
             for path, name, value in (
                 ("extensionsRequired", "X_new", ["X_new"]),
                 (f"{PRIMITIVE}.extensions", DRACO, {DRACO: {}}),
-                ("bufferViews.0.extensions", "EXT_meshopt_compression", {"EXT_meshopt_compression": {}}),
-                ("nodes.0.extensions", "EXT_mesh_gpu_instancing", {"EXT_mesh_gpu_instancing": {}}),
             )
         ),
         ("accessors.0.count", 90, WITHIN.format(90)),
-        ("bufferViews.0.byteLength", 95, WITHIN.format(8)),
         ("bufferViews.0.byteOffset", -4,
          f"bufferViews 0: it must be within its buffer{END}"),
         ("accessors.0.count", 7, VTK.format("Invalid index in primitive")),
         (f"{PRIMITIVE}.mode", 1,
          f"its scene must have meshes of triangles; skipped primitives of points or lines: 1{END}"),
-        ("nodes.0.mesh", 5, VTK.format("Invalid mesh index 5")),
         ("nodes.0.children", [0], f"VTK must give a whole mesh, and does not (it crashed (code -11)){END}"),
         ("accessors.0.bufferView", -1,
          VTK.format("it is cut short or damaged, or has what VTK does not know")),
         (f"{PRIMITIVE}.attributes.JOINTS_1", 0,
          f"meshes 0: a node of a skin must have four joints at most{END}"),
-        ("nodes", [{}], f"its scene must have meshes of triangles{END}"),
         ("buffers", [{"byteLength": 168}],
          f"buffers 0: it must have the 168 bytes that the file says, not 0{END}"),
         *(
             ("buffers", [{"uri": uri}], f"buffers 0: it must be {told}")
             for uri, told in (
                 ("http://x", "the name of a file, not the address 'http://x'; fetch it and name the file"),
-                ("%2e%2e/a", "the name of a file in the scene's folder, not '../a'; copy the file there"),
                 ("b%20c", "in its folder, and is not there; copy it there"),
             )
         ),
@@ -296,7 +290,6 @@ test_what_is_no_scene_is_refused = refused(
         *(
             (data, CUT)
             for data in (
-                glb()[:19],
                 glb()[:20],
                 glb(version=1),
                 glb(kind=b"BIN\0"),

@@ -24,7 +24,7 @@ from autocolor.files.foreign.reader import (
     most_seconds,
     read_in_own_process,
 )
-from autocolor.files.formats import format_of, read_mesh
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.mesh import Mesh
@@ -86,7 +86,6 @@ def test_a_mesh_comes_back_and_what_a_library_prints_goes_nowhere(
         ("raise KeyError('x')",
          CANNOT.format("it is cut short or damaged, or has what fake does not know")),
         ("raise ForeignRefusal('a cell must be flat', 'bend it')", "a.fake: a cell must be flat; bend it"),
-        ("raise InputError('a.fake, line 2: it ends')", "a.fake, line 2: it ends"),
         ("import os; os.abort()", MUST.format("it crashed (code -6)")),
         ("mesh = [bytes(1 << 20) for _ in range(5000)]",
          CANNOT.format("it needs more memory than its size and --limit allow")),
@@ -159,10 +158,8 @@ def test_names_of_parts_are_made_unique_and_printable() -> None:
 @pytest.mark.parametrize(
     ("name", "head", "told", "extra"),
     [
-        ("a.vtu", b"<VTKFile>", "VTK XML files, the library VTK", "vtk"),
         ("a.glb", b"glTF\2\0\0\0\x16\0\0\0\2\0\0\0JSON{}", "glTF files, the library VTK", "vtk"),
         ("a.3mf", b"PK\5\6" + bytes(18), "3MF files, the library lib3mf", "meshes"),
-        ("a.inp", b"*NODE", "Abaqus files, the library meshio", "meshes"),
     ],
 )
 def test_a_missing_package_is_told_with_what_installs_it(
@@ -177,21 +174,6 @@ def test_a_missing_package_is_told_with_what_installs_it(
     assert str(caught.value) == (
         f'{name}: to read {told} must be installed; run: pip install "autocolor[{extra}]"'
     )
-
-
-@pytest.mark.parametrize(
-    ("head", "name"),
-    [
-        (b"# vtk DataFile Version 3.0\n", "VTK"),
-        (b'<?xml version="1.0"?>\n<!-- by hand -->\n<VTKFile type="PolyData">', "VTK XML"),
-        (b"glTF\2\0\0\0", "glTF"),
-    ],
-)
-def test_files_of_vtk_and_gltf_are_known_by_how_they_begin(tmp_path: Path, head: bytes, name: str) -> None:
-    (tmp_path / "a.model").write_bytes(head)
-    found = format_of(tmp_path / "a.model")
-    assert found is not None
-    assert found.name == name
 
 
 # Damage.
