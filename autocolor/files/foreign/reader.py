@@ -62,39 +62,6 @@ def size_of_file(path: Path) -> int:
         return status.st_size
 
 
-def read_in_own_process(read_as: ForeignFormat, path: Path, size: int, placement: Placement) -> MeshReport:
-    """The mesh of a file of `size` bytes that a library reads in its own process. Raises InputError."""
-    library, seconds, nowhere = read_as.library, most_seconds(size), subprocess.DEVNULL
-    paths = [str(Path(autocolor.files.__path__[0]).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
-    # Each thread reserves memory, which is limited.
-    one = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "VTK_SMP_MAX_THREADS"), "1")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **one}
-    code = None
-    with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
-        result, file = Path(folder) / "mesh.npz", os.fspath(path.absolute())
-        numbers = (str(size), str(validated_limit(None)), json.dumps(dataclasses.astuple(placement)))
-        try:
-            code = subprocess.call(
-                (*WORKER, library, read_as.module, read_as.kind, file, os.fspath(result), *numbers),
-                stdin=nowhere, stdout=nowhere, stderr=nowhere, env=environment, timeout=seconds,
-            )  # fmt: skip
-            if code == 0:
-                require_size(path.name, result.stat().st_size, GROWTH)
-                return loaded(result)
-            reason = f"it crashed (code {code})"
-        except subprocess.TimeoutExpired:
-            raise InputError(
-                f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
-                " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
-            ) from None
-        except (zipfile.BadZipFile, OSError, EOFError, ValueError, LookupError, TypeError) as error:
-            reason = str(error)[:300]
-        sentence = f"{library} must give a whole mesh, and does not ({reason}); {REMEDY}"
-        if code == FAILED and result.is_file():
-            sentence = printable(result.read_text("utf-8", "replace")[:2000])
-    raise InputError(sentence if sentence.startswith(path.name) else f"{path.name}: {sentence}")
-
-
 LIBRARIES: Final = {
     "VTK": ("vtkmodules", "vtk"),
     "lib3mf": ("lib3mf", "meshes"),
@@ -150,14 +117,41 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
 
     Raises InputError, and UnavailableError if a package is missing.
     """
-    size = read_as.size_of(path)
-    package, extra = LIBRARIES[read_as.library]
+    size, library, nowhere = read_as.size_of(path), read_as.library, subprocess.DEVNULL
+    package, extra = LIBRARIES[library]
     if importlib.util.find_spec(package) is None:
         raise UnavailableError(
-            f"{path.name}: to read {read_as.name} files, the library {read_as.library} must be installed;"
+            f"{path.name}: to read {read_as.name} files, the library {library} must be installed;"
             f' run: pip install "autocolor[{extra}]"'
         )
     require_size(path.name, size, read_as.growth)
     if placement.up == "z" and read_as.up:
         placement = dataclasses.replace(placement, up=read_as.up)
-    return read_in_own_process(read_as, path, size, placement)
+    seconds, code = most_seconds(size), None
+    paths = [str(Path(autocolor.files.__path__[0]).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
+    # Each thread reserves memory, which is limited.
+    one = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "VTK_SMP_MAX_THREADS"), "1")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **one}
+    with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
+        result, file = Path(folder) / "mesh.npz", os.fspath(path.absolute())
+        numbers = (str(size), str(validated_limit(None)), json.dumps(dataclasses.astuple(placement)))
+        try:
+            code = subprocess.call(
+                (*WORKER, library, read_as.module, read_as.kind, file, os.fspath(result), *numbers),
+                stdin=nowhere, stdout=nowhere, stderr=nowhere, env=environment, timeout=seconds,
+            )  # fmt: skip
+            if code == 0:
+                require_size(path.name, result.stat().st_size, GROWTH)
+                return loaded(result)
+            reason = f"it crashed (code {code})"
+        except subprocess.TimeoutExpired:
+            raise InputError(
+                f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
+                " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
+            ) from None
+        except (zipfile.BadZipFile, OSError, EOFError, ValueError, LookupError, TypeError) as error:
+            reason = str(error)[:300]
+        sentence = f"{library} must give a whole mesh, and does not ({reason}); {REMEDY}"
+        if code == FAILED and result.is_file():
+            sentence = printable(result.read_text("utf-8", "replace")[:2000])
+    raise InputError(sentence if sentence.startswith(path.name) else f"{path.name}: {sentence}")

@@ -22,7 +22,7 @@ from autocolor.files.foreign.reader import (
     ForeignFormat,
     most_memory,
     most_seconds,
-    read_in_own_process,
+    read_foreign,
 )
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport, Placement
@@ -52,11 +52,16 @@ CANNOT = "a.fake: fake must be able to read it, and cannot ({})" + END
 MUST = "a.fake: fake must give a whole mesh, and does not ({})" + END
 
 
+@pytest.fixture(autouse=True)
+def _fake(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(reader.LIBRARIES, "fake", ("json", ""))
+
+
 def read(folder: Path, body: str) -> MeshReport:
     """The mesh that a library gives, which runs some lines."""
     path = folder / "a.fake"
     path.write_text(body)
-    return read_in_own_process(FAKE, path, 10_000, Placement("x", 2.0, normals="file"))
+    return read_foreign(FAKE, path, Placement("x", 2.0, normals="file"))
 
 
 def test_a_mesh_comes_back_and_what_a_library_prints_goes_nowhere(
