@@ -22,7 +22,7 @@ from vtkmodules.vtkIOGeometry import vtkGLTFReader
 from autocolor.arrays import components_of
 from autocolor.checks import Color, listed
 from autocolor.files.foreign.gltf_document import Row, completed, document, refuse_extensions, rows
-from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, Part, joined
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, PlacedPart, joined
 from autocolor.files.foreign.vtk import listening, places_of, refuse_printed, surface_of
 from autocolor.files.meshes.repair import different, printable_name
 from autocolor.files.meshes.welding import welded
@@ -61,7 +61,7 @@ def read(path: Path, kind: str) -> ForeignMesh:
     return joined(parts, sentences, colors)
 
 
-def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) -> Iterator[Part]:
+def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) -> Iterator[PlacedPart]:
     """The parts of a scene. VTK names its blocks Node_3 and Mesh_1, by the numbers of nodes and meshes."""
 
     def blocks(parent: Any, node: int) -> Iterator[tuple[int, int, Any]]:
@@ -88,7 +88,7 @@ def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) ->
                 triangles = triangles[:, ::-1]
             coordinates, row_of = welded(places_of(data))
             normals = data.GetPointData().GetNormals()
-            yield Part(
+            yield PlacedPart(
                 f"{name} {material}" if material and len(primitives) > 1 else name,
                 material,
                 coordinates,

@@ -69,7 +69,7 @@ def part_names_of(names: Sequence[str]) -> tuple[str, ...]:
     return different([printable_name(name) or "part" for name in names])
 
 
-class Part(NamedTuple):
+class PlacedPart(NamedTuple):
     """Triangles, (triangles, 3), of a part, whose nodes other parts may have, too.
 
     `material` is "" and `normals`, (corners, 3), are None if it has none.
@@ -82,7 +82,7 @@ class Part(NamedTuple):
     normals: Floats | None = None
 
 
-def joined(parts: Sequence[Part], sentences: Sequence[str], colors: Mapping[str, Color]) -> ForeignMesh:
+def joined(parts: Sequence[PlacedPart], sentences: Sequence[str], colors: Mapping[str, Color]) -> ForeignMesh:
     """The mesh of at least one part."""
     names, counts = part_names_of([part.name for part in parts]), [len(part.triangles) for part in parts]
     # The same array of nodes, which several parts may have, is there once.

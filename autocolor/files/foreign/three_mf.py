@@ -18,7 +18,7 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import Color, shown
-from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, Part, joined, unreadable
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, PlacedPart, joined, unreadable
 from autocolor.files.meshes.repair import printable_name
 
 Mesh = tuple[Floats, Indices, list[tuple[str, Indices]]]
@@ -51,7 +51,7 @@ def read(path: Path, kind: str) -> ForeignMesh:
 
 def _mesh_of_build(model: Any, stem: str, sentences: list[str]) -> ForeignMesh:
     """All parts of the build; `stem` names objects without a name. Raises ForeignRefusal."""
-    skipped, colors, parts = Counter[str](), dict[str, Color](), list[Part]()
+    skipped, colors, parts = Counter[str](), dict[str, Color](), list[PlacedPart]()
     meshes: dict[int, Mesh] = {}
     items = model.GetBuildItems()
     while items.MoveNext():
@@ -68,7 +68,7 @@ def _mesh_of_build(model: Any, stem: str, sentences: list[str]) -> ForeignMesh:
             nodes = nodes @ transform[:3, :3] + transform[3, :3]
             for material, rows in materials:
                 own_name = f"{name} {material}" if material and len(materials) > 1 else name
-                parts.append(Part(own_name, material, nodes, triangles[rows]))
+                parts.append(PlacedPart(own_name, material, nodes, triangles[rows]))
     sentences += [f"left out {what}: {number:,}" for what, number in skipped.items()]
     if not parts:
         reason = ", ".join(sentences) or "the build is empty"

@@ -38,14 +38,20 @@ DATA_SETS: Final = ("PolyData", "UnstructuredGrid", "StructuredGrid", "Rectiline
 
 # Cells by the numbers of their types.
 
-EMPTY, STRIP, ANY_POLYGON, PIXEL, VOXEL, POLYHEDRON = 0, 6, 7, 8, 11, 42
+EMPTY: Final = 0
+STRIP: Final = 6
+ANY_POLYGON: Final = 7
+PIXEL: Final = 8
+VOXEL: Final = 11
+POLYHEDRON: Final = 42
 SHAPE_OF_EDGES: Final = {3: "triangle", 4: "quad", 6: "tetra", 8: "pyramid", 9: "wedge", 12: "hexahedron"}
 """The shape of a cell by the number of its edges."""
 
 ALONG_AXES: Final = [0, 1, 3, 2, 4, 5, 7, 6]
 """The order in which the corners of a pixel or voxel go around it."""
 
-DUPLICATE, HIDDEN = 1, 32
+DUPLICATE: Final = 1
+HIDDEN: Final = 32
 """The bits of cells that are elsewhere, too, and of those that are not shown."""
 
 
@@ -88,10 +94,10 @@ def read(path: Path, kind: str) -> ForeignMesh:
 
 def _ghosts(data: Any) -> AnyArray:
     """For each cell, whether it is elsewhere, too, or not shown; otherwise 0."""
-    ghosts = data.GetCellData().GetArray("vtkGhostType")
-    return (vtk_to_numpy(ghosts) if ghosts else np.zeros(data.GetNumberOfCells(), np.uint8)) & (
-        DUPLICATE | HIDDEN
-    )
+    array = data.GetCellData().GetArray("vtkGhostType")
+    ghosts: AnyArray = vtk_to_numpy(array) if array else np.zeros(data.GetNumberOfCells(), np.uint8)
+    ghosts = ghosts & (DUPLICATE | HIDDEN)
+    return ghosts
 
 
 def _legacy(path: Path) -> Any:
@@ -196,7 +202,7 @@ def _lists(cells: Any) -> tuple[Indices, Indices]:
     numbers, offsets = (vtk_to_numpy(each).astype(np.intp) for each in arrays)
     sizes = np.diff(offsets)
     if len(numbers) and (offsets[0] or offsets[-1] != len(numbers) or min(sizes.min(), numbers.min()) < 0):
-        raise ForeignRefusal("the offsets of cells must rise from 0 to the number of their nodes")
+        raise ForeignRefusal("nodes of cells must be 0 or more, and their offsets must rise to their number")
     return numbers, sizes if len(numbers) else np.zeros_like(sizes)
 
 
@@ -205,7 +211,10 @@ def _cells(data: Any) -> tuple[Indices, Flats]:
     if data.IsA("vtkPolyData"):
         arrays = (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips())
         numbers, sizes = (np.concatenate(each) for each in zip(*map(_lists, arrays), strict=True))
-        types = np.repeat([1, 3, ANY_POLYGON, STRIP], [each.GetNumberOfCells() for each in arrays])
+        types = np.repeat(
+            [1, 3, ANY_POLYGON, STRIP],
+            [each.GetNumberOfCells() for each in arrays],
+        )
     else:
         numbers, sizes = _lists(data.GetCells())
         # The name of the array before VTK 9.6 is the second.
