@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 from autocolor.errors import InputError
+from autocolor.files.foreign.reader import FOREIGN, read_foreign
 from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.csv_tables import CSV_FILES, read_csv_tables, write_csv_tables
-from autocolor.files.meshes.foreign import FOREIGN, read_foreign
 from autocolor.files.meshes.npy_tables import MAGIC, NODES, POLYGONS, read_npy_tables, write_npy_tables
 from autocolor.files.meshes.obj import begins_as_obj, read_obj
 from autocolor.files.meshes.obj_writing import write_obj
