@@ -38,7 +38,7 @@ from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import status_of
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
-from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
+from autocolor.files.scene_toml.scene_meshes import SOURCES, MeshSource
 from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.files.writing import table_exists
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
@@ -171,7 +171,7 @@ def read_scene_with_report(
         folder = path if path.is_dir() else path.parent
     if report.mesh_files:
         source_path = scene_file and scene_file.resolve()
-        keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, source_path))
+        SOURCES[report.scene.mesh] = MeshSource(folder.resolve(), report.mesh_files, source_path)
     return report
 
 

@@ -11,10 +11,10 @@ import pytest
 from autocolor import Mesh, read_scene, render, write_picture
 from autocolor.errors import InputError
 from autocolor.files.scene_toml.scene_meshes import (
+    SOURCES,
     MeshSource,
     meshes_of,
     meshes_there,
-    source_of,
     written_mesh,
 )
 from autocolor.files.scene_toml.toml_text import SceneProblems
@@ -122,13 +122,13 @@ def test_a_mesh_is_from_the_files_that_it_was_read_from(
 ) -> None:
     entry = {"file": "car.obj", "up": "y"}
     scene = read_scene(folder)
-    assert source_of(scene.mesh) == MeshSource(folder, (entry,), folder / "scene.toml")
-    assert source_of(scene.replace(ambient=0.5).mesh) == source_of(scene.mesh)
-    assert source_of(dataclasses.replace(scene.mesh)) is None
+    assert SOURCES.get(scene.mesh) == MeshSource(folder, (entry,), folder / "scene.toml")
+    assert SOURCES.get(scene.replace(ambient=0.5).mesh) == SOURCES.get(scene.mesh)
+    assert SOURCES.get(dataclasses.replace(scene.mesh)) is None
     monkeypatch.chdir(folder)
-    assert source_of(read_scene("car.obj", up="y").mesh) == MeshSource(folder, (entry,), None)
+    assert SOURCES.get(read_scene("car.obj", up="y").mesh) == MeshSource(folder, (entry,), None)
     write_picture("car.npz", scene, render(scene, 12, 16))
-    assert source_of(read_scene("car.npz").mesh) is None
+    assert SOURCES.get(read_scene("car.npz").mesh) is None
 
 
 # The files for a mesh that is saved.

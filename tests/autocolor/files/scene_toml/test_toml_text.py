@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
 
 import pytest
 from hypothesis import example, given
@@ -21,72 +20,55 @@ from autocolor.scene.columns import Problem
 from tests.tables import refused
 
 
-def refusal(data: bytes | str) -> str:
-    with pytest.raises(InputError) as caught:
-        parsed_toml(data if isinstance(data, bytes) else data.encode(), "scene.toml")
-    assert len(caught.value.problems) == 1
-    return str(caught.value)
-
-
-A = "scene.toml: a scene file must be text"
-WORD = "must have at most 100 digits or letters, not 5,000; write it shorter, or in quotes"
-DEEP = "a key must have at most 8 parts between dots, not more; shorten it"
-KEYS = [each.encode() for each in ("a" + ".a" * 20_000, "a" + " . 'b'" * 20_000, '"a"' + '."b"' * 20_000)]
-
-SYNTAX = "it must be valid TOML, but is not at"
+WRONG = "it must be valid TOML"
+LARGE = (
+    "a scene file must have at most 16 brackets in each other, 8 parts between the dots of a key and 100 letters"
+    " or digits without quotes, not more; write it simpler"
+)
 
 test_what_is_no_toml_is_refused = refused(
     lambda data: parsed_toml(data, "scene.toml"),
     [
         (
             b"a = 1\nb 2\n",
-            f"scene.toml, line 2: {SYNTAX} column 3 (expected '=' after a key in a key/value pair); correct"
-            " the line",
+            f"scene.toml: {WRONG} (Expected '=' after a key in a key/value pair (at line 2, column 3)); correct it",
         ),
         (
-            b"\na = [1,\n\n",
-            f"scene.toml, line 2: {SYNTAX} the end of the file (invalid value); correct the line",
+            "a = 1".encode("utf-16"),
+            "scene.toml: a scene file must be text in UTF-8, not UTF-16; save it as UTF-8",
         ),
-        ("a = 1".encode("utf-16"), f"{A} in UTF-8, not UTF-16; save it as UTF-8"),
-        (b"a = 1\n\0", f"{A}, not hold a NUL byte (line 2); save it as UTF-8 text"),
         (
             b"a = 1\nb = '\xe4'",
-            "scene.toml, line 2: a scene file must be text in UTF-8, not bytes like 0xe4; save it as UTF-8",
+            "scene.toml, line 2: a scene file must be text in UTF-8; save it as UTF-8",
         ),
         *(
-            (
-                b"b = 1\na = " + brackets,
-                "scene.toml, line 2: brackets must be nested at most 16 deep, not deeper; flatten them",
+            (b"\n" + text, f"scene.toml, line 2: {LARGE}")
+            for text in (
+                b"a = " + b"[" * 17,
+                b"a = " + b"[{a=" * 500,
+                b"]]]]a = " + b"[" * 17,
+                b"a" + b".a" * 8 + b" = 1",
+                b"a" + b" . 'b'" * 20_000,
+                b"a = { b = [ { " + b'"a".' * 8 + b"b = 1 } ] }",
+                b"a" * 101 + b" = 1",
+                b"a = -1" + b"_1" * 2499,
             )
-            for brackets in (b"[" * 1000, b"[" * 1000 + b"]" * 1000, b"{a=" * 1000, b"[{a=" * 500)
-        ),
-        *(
-            (b"\n" + form.replace(b"K", key), f"scene.toml, line 2: {DEEP}")
-            for key in KEYS
-            for form in (b"K = 1", b"[K]", b"[[K]]", b"a = { K = 1 }")
-        ),
-        *(
-            (b"a = " + word, f"scene.toml, line 1: a number or a key {WORD}")
-            for word in (b"1" * 5000, b"0x" + b"f" * 4998, b"-1" + b"_1" * 2499, b"1e" + b"9" * 4998)
         ),
     ],
 )
 
 
-def test_nesting_key_parts_and_words_may_reach_their_limits() -> None:
-    texts: dict[str, Callable[[int], str]] = {
-        "brackets must be nested at most 16 deep": lambda n: "a = " + "[" * n + "]" * n,
-        "a key must have at most 8 parts": lambda n: "a" + ".b" * (n - 1) + " = 1",
-        "a number or a key must have at most 100 digits or letters, not 101;": lambda n: "a" * n + " = 1",
-    }
-    for (sentence, text), most in zip(texts.items(), (16, 8, 100), strict=True):
-        for number in (most - 1, most):
-            assert parsed_toml(text(number).encode(), "scene.toml")
-        assert sentence in refusal(text(most + 1))
-    assert len(parsed_toml(b"a = [" + b"1.5, " * 1000 + b"]", "x")["a"]) == 1000
-    # Brackets that are closed again do not count, nor do closing brackets too many.
-    assert parsed_toml(b"a = [" + b"[[]], " * 40 + b"]", "x")
-    assert "at most 16 deep" in refusal("]]]]\na = " + "[" * 17)
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a = " + "[" * 16 + "]" * 16,
+        "a = [" + "[[]], " * 40 + "]",
+        "a" + ".b" * 7 + " = 1",
+        "a" * 100 + " = 1",
+    ],
+)
+def test_nesting_key_parts_and_words_may_reach_their_limits(text: str) -> None:
+    assert parsed_toml(text.encode(), "scene.toml")
 
 
 def test_brackets_and_dots_in_texts_and_comments_do_not_count() -> None:
