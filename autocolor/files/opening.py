@@ -39,7 +39,7 @@ from autocolor.files.reading import status_of
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import SOURCES, MeshSource
-from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.scene_writing import write_scene
 from autocolor.files.writing import table_exists
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.mesh import Mesh
@@ -86,9 +86,7 @@ SCENE: Final = SceneFormat(
     suffixes=(".toml",),
     in_folder=(SCENE_FILE,),
     read=read_scene_file,
-    write=lambda path, scene, overwrite: write_scene_with_tables(
-        path, scene, overwrite=overwrite, complete=False
-    ),
+    write=lambda path, scene, overwrite: write_scene(path, scene, overwrite=overwrite),
 )
 
 STORE: Final = SceneFormat(

@@ -22,7 +22,6 @@ from autocolor.files.reading import read_bytes
 from autocolor.files.scene_toml.scene_text import sparse_row
 from autocolor.files.scene_toml.toml_edit import edited_toml
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml
-from autocolor.files.scene_writing import refuse_names
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.scene.columns import RowError, from_plain
 from autocolor.scene.rigs import Rig
@@ -51,13 +50,12 @@ def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bo
     rig = scene.rig if isinstance(scene, Scene) else scene
     if not isinstance(rig, Rig):
         raise UsageError(f"a rig must be of a Scene, not {shown(rig)}; give the scene with the lights")
-    refuse_names(rig.lights)
     tables = {
         "minimum": rig.minimum,
         "maximum": rig.maximum,
         "lights": [sparse_row(light) for light in rig.lights],
     }
-    data = (edited_toml("", tables, ("lights",)) or "").encode()
+    data = edited_toml(b"", tables) or b""
     if len(data) > LARGEST_TEXT:
         raise OutputError(
             f"{path}: a rig file must have at most {LARGEST_TEXT:,} bytes, not {len(data):,}; remove lights"

@@ -7,9 +7,7 @@ scene file of the same object is edited, so that its comments and its order stay
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -29,19 +27,27 @@ from autocolor.files.scene_toml.scene_meshes import (
 from autocolor.files.scene_toml.scene_text import (
     edited_to,
     scene_text,
-    with_document,
+    tables_of,
+    without_empty,
 )
+from autocolor.files.scene_toml.toml_edit import edited_toml
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import write_store
 from autocolor.files.writing import Guard, new_folder, no_guard, refuse_output, write_atomically
 from autocolor.logs import logger_of
-from autocolor.scene.columns import Row, row_label, to_plain
 from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)
 
 
-def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool = False) -> None:
+def write_scene(
+    path: str | os.PathLike[str],
+    scene: Scene,
+    *,
+    overwrite: bool = False,
+    complete: bool = False,
+    guard: Guard = no_guard,
+) -> list[Path]:
     """Write a scene so that `read_scene` gives it back: its tables as TOML, and its mesh.
 
     `path` is a store (.sqlite, .db; see `write_store`), a scene file (.toml), or a folder, for a `scene.toml`
@@ -50,26 +56,13 @@ def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool =
     to a new file. The scene's name is the name of its folder or file, and is written to stores alone.
 
     With `overwrite`, a scene file may exist. If it is a file of the same object, only the differences are
-    changed, and its comments, its order and its style stay. Mesh files are never overwritten.
+    changed, and its comments, its order and its style stay. Mesh files are never overwritten. If `complete`,
+    all keys are written, also those whose values are their defaults. `guard` checks the scene file or store
+    before it is overwritten.
 
-    Raises OutputError if the file exists and `overwrite` is false, or if nothing can be created there;
-    WriteError if writing fails; UsageError for a path of another kind of file. Nothing is changed then.
-    """
-    write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
-
-
-def write_scene_with_tables(
-    path: str | os.PathLike[str],
-    scene: Scene,
-    *,
-    overwrite: bool,
-    complete: bool = True,
-    guard: Guard = no_guard,
-) -> list[Path]:
-    """Like `write_scene`; returns the files that were written, the scene file last.
-
-    If `complete`, all keys are written, also those whose values are their defaults. `guard` checks the scene
-    file or store before it is overwritten.
+    Returns the files that were written, the scene file last. Raises OutputError if the file exists and
+    `overwrite` is false, or if nothing can be created there; WriteError if writing fails; UsageError for a
+    path of another kind of file. Nothing is changed then.
     """
     if Path(path).suffix.lower() in STORE_SUFFIXES and not os.path.isdir(path):
         if scene.mesh.own_normals is not None:
@@ -78,7 +71,6 @@ def write_scene_with_tables(
         return [Path(path)]
     target = _target(path)
     check_scene(scene)
-    refuse_names((*scene.parts, *scene.surfaces, *scene.lights, *scene.views))
     written: list[Path] = []
     with new_folder(target.parent, "a scene"):
         try:
@@ -118,15 +110,6 @@ def _target(path: str | os.PathLike[str]) -> Path:
     return target if suffix == ".toml" else target / SCENE_FILE
 
 
-def refuse_names(rows: Iterable[Row]) -> None:
-    """Raise InputError if a text in a row has a character that UTF-8 lacks."""
-    for row in rows:
-        try:
-            json.dumps(to_plain(row), ensure_ascii=False).encode()
-        except UnicodeEncodeError:
-            raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it") from None
-
-
 def _existing(target: Path) -> bytes | None:
     """The text of the existing scene file; None if the file is missing or no valid TOML."""
     try:
@@ -153,8 +136,9 @@ def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bo
         # The angle stands in every table that has the key, else in the first.
         for table in [table for table in tables if "crease_angle" in table] or tables[:1]:
             table["crease_angle"] = mesh.crease_angle
-    data = with_document(old, {**document, "mesh": tables})
-    return None if data is None else edited_to(data, scene, target, meshes.reports, complete=complete)
+    wanted = {**document, **(without_empty(tables_of(scene), document) if complete else {}), "mesh": tables}
+    data = edited_toml(old, wanted)
+    return None if data is None else edited_to(data, scene, target, meshes.reports)
 
 
 def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:

@@ -8,22 +8,19 @@ lights, for example, depend on the view.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_toml.scene_file import report_of_text
-from autocolor.files.scene_toml.toml_edit import edited_toml, item_numbers
+from autocolor.files.scene_toml.toml_edit import FILE_TABLES, ORDERED, edited_toml, item_numbers
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.scene.columns import Row, difference, fields_of, from_plain, to_plain, with_values
 from autocolor.scene.geometry.normals import CREASE_ANGLE
-from autocolor.scene.row_kinds import RangesByName, RowList, without_name
+from autocolor.scene.row_kinds import RowList, without_name
 from autocolor.scene.scene import Scene
-
-FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "lights")
-"""The tables of a scene file, in the order in which they are written."""
 
 BY_NAME: Final = ("parts", "surfaces")
 """The tables of a scene file whose rows are tables by name; rows of other tables have the key `name`."""
@@ -45,11 +42,7 @@ def scene_text(
     if entries and not (without_defaults and scene.mesh.crease_angle == CREASE_ANGLE):
         entries[0]["crease_angle"] = scene.mesh.crease_angle
     tables["mesh"] = entries
-    wanted = {key: value for key, value in tables.items() if value or not isinstance(value, (list, dict))}
-    if not scene.lights:
-        # Without the key, lights would be created.
-        wanted["lights"] = []
-    return edited_toml("", wanted, FILE_TABLES) or ""
+    return (edited_toml(b"", without_empty(tables)) or b"").decode()
 
 
 def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
@@ -96,22 +89,14 @@ def sparse_row(row: Row) -> dict[str, object]:
 MOST_ROUNDS: Final = 6
 """Limit: a text needs at most three rounds: for written keys, for their order, for created keys."""
 
-ORDERED: Final = (
-    "surfaces",
-    *(name for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)),
-)
-"""The tables whose keys have an order."""
-
 Tables = Mapping[str, Any]
 
 
-def edited_to(
-    data: bytes, scene: Scene, path: Path, reports: list[MeshReport], *, complete: bool = False
-) -> bytes | None:
+def edited_to(data: bytes, scene: Scene, path: Path, reports: list[MeshReport]) -> bytes | None:
     """The text of a scene file, edited until it gives the scene; its mesh and its name may differ.
 
-    `reports` are the meshes that the text names. If `complete`, all keys and rows are written, with values as
-    in a new file. None if the text cannot be read, or is too long, or if no edit makes it give the scene.
+    `reports` are the meshes that the text names. None if the text cannot be read, or is too long, or if no
+    edit makes it give the scene.
     """
     edited: bytes | None = data
     for _ in range(MOST_ROUNDS):
@@ -121,28 +106,22 @@ def edited_to(
             current = report_of_text(edited, path, meshes=reports).scene
         except InputError:
             return None
+        if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
+            return edited
         document = parsed_toml(edited, path.name)
-        is_same = with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene)
-        if is_same and not complete:
-            return edited
-        if is_same:
-            wanted = {**document, **tables_of(scene)}
-        else:
-            wanted = _changed(document, tables_of(current), tables_of(scene), tables_of(scene, sparse=True))
-        # Without the key, lights would be created.
-        given = {
-            key: value for key, value in wanted.items() if value != [] or key == "lights" or key in document
-        }
-        before, edited = edited, with_document(edited, given)
-        if is_same and edited == before:
-            return edited
+        wanted = _changed(document, tables_of(current), tables_of(scene), tables_of(scene, sparse=True))
+        edited = edited_toml(edited, without_empty(wanted, document))
     return None
 
 
-def with_document(data: bytes, document: Tables) -> bytes | None:
-    """The text of a scene file, edited until it gives these values; None if no edit does."""
-    text = edited_toml(data.decode(), document, FILE_TABLES, ORDERED)
-    return None if text is None else text.encode()
+def without_empty(tables: Tables, present: Collection[str] = ()) -> dict[str, Any]:
+    """The tables of a scene without empty ones, unless their keys are present."""
+    # Without the key, lights would be created.
+    return {
+        key: value
+        for key, value in tables.items()
+        if value not in ([], {}) or key == "lights" or key in present
+    }
 
 
 def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:

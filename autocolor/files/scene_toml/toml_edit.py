@@ -28,6 +28,12 @@ LOG: Final = logger_of(__name__)
 
 EMPTY_LINE: Final = re.compile(r"^[ \t\r]*\n", re.MULTILINE)
 
+FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "lights")
+"""The tables of a scene file that get headers of their own, in the order in which they are written."""
+
+ORDERED: Final = ("surfaces", "exposure")
+"""The tables whose keys have an order."""
+
 Document = Mapping[str, Any]
 """The values of a TOML text: tables are dictionaries, arrays are lists."""
 
@@ -100,31 +106,30 @@ def _identity(item: Any) -> str:
     return str(item["name"]) if isinstance(item, dict) and "name" in item else repr(item)
 
 
-def edited_toml(
-    text: str, wanted: Document, tables: Sequence[str] = (), ordered: Collection[str] = ()
-) -> str | None:
+def edited_toml(data: bytes, wanted: Document) -> bytes | None:
     """The valid TOML text, edited until it gives the wanted values; None if no edit does.
 
-    `tables` are the keys of tables that get headers of their own, in the order of new ones; `ordered` are the
-    keys of tables whose keys have an order. Rows of an array are the same rows if they have the same name.
+    Rows of an array are the same rows if they have the same name. Raises InputError for a text in the values
+    that UTF-8 lacks.
     """
     # Tuples become lists, as in what is read back.
     wanted = tomllib.loads(f"wanted = {toml_value(wanted)}")["wanted"]
     # Edit lines that end with line feeds; a file whose lines end otherwise gets them back.
+    text = data.decode()
     ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
     text = text.replace(ends, "\n")
     old = tomllib.loads(text)
     # Tables whose keys do not get their order when keys are edited and added are written anew.
     moved: Collection[str] = ()
     for _ in range(2):
-        edited = text if repr(old) == repr(wanted) else _edited_text(text, old, wanted, tables, moved)
+        edited = text if repr(old) == repr(wanted) else _edited_text(text, old, wanted, moved)
         try:
             values = tomllib.loads(edited)
         except tomllib.TOMLDecodeError:
             values = {}
-        moved = [name for name in ordered if _keys(values.get(name)) != _keys(wanted.get(name))]
+        moved = [name for name in ORDERED if _keys(values.get(name)) != _keys(wanted.get(name))]
         if values == wanted and not moved:
-            return edited.replace("\n", ends)
+            return edited.replace("\n", ends).encode()
     return None
 
 
@@ -133,9 +138,7 @@ def _keys(value: Any) -> list[str]:
     return list(value) if isinstance(value, dict) else []
 
 
-def _edited_text(
-    text: str, old: Document, wanted: Document, tables: Sequence[str], moved: Collection[str]
-) -> str:
+def _edited_text(text: str, old: Document, wanted: Document, moved: Collection[str]) -> str:
     """The text with the wanted values, unless an edit fails; keys of moved tables are written anew."""
     blocks = blocks_of(text)
     before = _numbered(blocks, old, wanted)
@@ -145,7 +148,7 @@ def _edited_text(
     for block in blocks:
         if repr(_at(before, block.path)) != repr(_at(wanted, block.path)):
             block.keys = [_with_value(key, block.path, wanted, moved) for key in block.keys]
-    for name in tables:
+    for name in FILE_TABLES:
         if name not in inline or name in moved:
             _add_blocks(blocks, name, wanted.get(name))
         _arrange(blocks, name, wanted)
@@ -173,7 +176,7 @@ def _numbered(blocks: Sequence[Block], old: Document, wanted: Document) -> Docum
         before[name] = [None if number is None else old[name][number] for number in numbers]
         places = {number: place for place, number in enumerate(numbers)}
         for block in blocks:
-            if block.path[:1] == (name,):
+            if block.path[0:1] == (name,) and isinstance(block.path[1], int):
                 block.path = (name, places.get(block.path[1], -1), *block.path[2:])
     return before
 

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Any, Final, NamedTuple
 
+from autocolor.checks import shown
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.reading import text_problem, utf_8_text
 from autocolor.scene.columns import Problem
@@ -161,6 +162,8 @@ def toml_value(value: object) -> str:
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{toml_key(key)} = {toml_value(inner)}' for key, inner in value.items())} }}"
     if isinstance(value, (str, bool)):
+        if isinstance(value, str) and any("\ud800" <= letter <= "\udfff" for letter in value):
+            raise InputError(f"a text in a file must be valid in UTF-8, not {shown(value)}; rename it")
         # TOML has the escapes of JSON. What can be printed stays legible.
         letters = json.dumps(value, ensure_ascii=False)
         return "".join(each if each.isprintable() else f"\\U{ord(each):08x}" for each in letters)

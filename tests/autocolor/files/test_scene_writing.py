@@ -27,7 +27,6 @@ from autocolor import (
 )
 from autocolor.files import scene_writing
 from autocolor.files.scene_toml import scene_text
-from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.scene.columns import with_values
 from autocolor.testing import scenes
 from tests.small import cube
@@ -108,7 +107,7 @@ def test_every_column_of_a_scene_is_read_back_also_over_another_one(
     assert len(list(folder.iterdir())) == 2
     # Written again, nothing of it changes.
     assert saved(folder, read_scene(folder)) == before
-    write_scene_with_tables(folder, second, overwrite=True, complete=complete)
+    write_scene(folder, second, overwrite=True, complete=complete)
     assert same(read_scene(folder), second)
 
 
@@ -239,14 +238,18 @@ def test_fields_at_their_defaults_are_left_out_and_rows_of_a_light_have_a_line_e
 
 
 def test_a_complete_file_has_all_keys_and_tells_what_was_written(car: Path) -> None:
-    written = write_scene_with_tables(car, scene_of(cube()), overwrite=True)
+    written = write_scene(car, scene_of(cube()), overwrite=True, complete=True)
     assert written == [car / "mesh.obj", car / "scene.toml"]
     text = (car / "scene.toml").read_text()
     for line in ("two_sided = true", "crease_angle = 40.0", 'exposure = "99.5 %"'):
         assert f"{line}\n" in text
     guarded: list[str] = []
-    written = write_scene_with_tables(
-        car, scene_of(cube()), overwrite=True, guard=lambda path: lambda: guarded.append(path.read_text())
+    written = write_scene(
+        car,
+        scene_of(cube()),
+        overwrite=True,
+        complete=True,
+        guard=lambda path: lambda: guarded.append(path.read_text()),
     )
     assert (written, guarded) == ([car / "scene.toml"], [text])
     assert (car / "scene.toml").read_text() == text

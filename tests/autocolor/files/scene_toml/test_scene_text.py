@@ -85,8 +85,8 @@ def read(text: bytes, meshes: list[MeshReport]) -> Scene:
     return report_of_text(text, PLACE, meshes=meshes).scene
 
 
-def edited(text: str, scene: Scene, meshes: list[MeshReport], complete: bool = False) -> str:
-    data = edited_to(text.encode(), scene, PLACE, meshes, complete=complete)
+def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
+    data = edited_to(text.encode(), scene, PLACE, meshes)
     assert data is not None
     return data.decode()
 
@@ -120,18 +120,6 @@ def test_a_renamed_light_keeps_its_place_and_its_comment(meshes: list[MeshReport
     text = HEADERS.replace('"rim"\n', '"rim"  # behind\n')
     scene = read(text.encode(), meshes).with_light("rim", name="moon")
     assert edited(text, scene, meshes) == text.replace('"rim"', '"moon"')
-
-
-@pytest.mark.parametrize("text", [INLINE, HEADERS, SHORT])
-def test_a_text_is_completed_with_all_that_it_does_not_tell(text: str, meshes: list[MeshReport]) -> None:
-    scene = read(text.encode(), meshes)
-    after = edited(text, scene, meshes, complete=True)
-    again = report_of_text(after.encode(), PLACE, meshes=meshes)
-    assert again.scene.replace(mesh=scene.mesh).equals(scene)
-    assert again.created == ()
-    assert after.count("# Mine.") == 1
-    assert after.count("two_sided") == len(scene.surfaces)
-    assert edited(after, scene, meshes, complete=True) == after
 
 
 COMMENTED = """\

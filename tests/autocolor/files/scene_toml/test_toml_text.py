@@ -19,7 +19,6 @@ from autocolor.files.scene_toml.toml_text import (
 from autocolor.scene.columns import Problem
 from tests.tables import refused
 
-
 WRONG = "it must be valid TOML"
 LARGE = (
     "a scene file must have at most 16 brackets in each other, 8 parts between the dots of a key and 100 letters"
