@@ -78,9 +78,7 @@ NEEDS = "scene.toml, line 1, mesh[1]: it must have a file, or nodes and polygons
 test_what_is_refused = refused(
     refuse_text,
     [
-        ("[[mesh]]\n", f"{NEEDS} none of them; correct it"),
         ('[[mesh]]\nnodes = "n.csv"\n', f"{NEEDS} nodes; correct it"),
-        ('[[mesh]]\npolygons = "p.csv"\n', f"{NEEDS} polygons; correct it"),
         (
             MESH + 'nodes = "n.csv"\npolygons = "p.csv"\n',
             f"{NEEDS} file and nodes and polygons; correct it",
@@ -95,23 +93,13 @@ test_what_is_refused = refused(
 )
 
 
-@pytest.mark.parametrize("name", ["../car.obj", "/etc/passwd", "a\\\\b.obj", "http://x/car.obj", "link.obj"])
+@pytest.mark.parametrize("name", ["../car.obj", "link.obj"])
 def test_no_file_outside_the_folder_is_opened_unless_that_is_allowed(folder: Path, name: str) -> None:
     (folder.parent / "car.obj").write_text(CAR)
     (folder / "link.obj").symlink_to(folder.parent / "car.obj")
     (sentence,) = refusal(folder, f'[[mesh]]\nfile = "{name}"\n')
     assert sentence.startswith("scene.toml, line 2, mesh[1]: file must ")
     assert len(read(folder, '[[mesh]]\nfile = "../car.obj"\n', outside=True)) == 1
-
-
-def test_the_problems_of_keys_and_of_files_stand_together(folder: Path) -> None:
-    (folder / "bad.obj").write_text("v 0 0\n")
-    assert refusal(folder, MESH + 'up = "w"\ncolor = 3\n[[mesh]]\nfile = "bad.obj"\n') == [
-        "scene.toml, line 3, mesh[1]: up must be 'x', 'y' or 'z', not 'w'",
-        "scene.toml, line 4, mesh[1]: there is no field 'color'; choose 'file', 'nodes', 'polygons', 'up',"
-        " 'scale', 'normals' or 'crease_angle'",
-        "bad.obj, line 1: a node must have three coordinates x y z, not 2; add what is missing",
-    ]
 
 
 # What is remembered of a mesh.
@@ -139,12 +127,9 @@ def test_a_mesh_is_from_the_files_that_it_was_read_from(
     [
         (cube(), "mesh.obj"),
         (Mesh(np.eye(3), np.array([[0, 1, 2], [0, 1, 1]]), np.zeros(2, np.intp), ("a",)), "mesh.tables"),
-        (Mesh(np.eye(3), np.array([[0, 1, 2]]), np.zeros(1, np.intp), ("a", "unused")), "mesh.tables"),
         (Mesh(np.eye(3), np.array([[0, 1, 2], [0, 2, 1]]), np.array([1, 0]), ("a", "b")), "mesh.tables"),
-        (Mesh(np.eye(3), np.array([[0, 1, 2]]), np.zeros(1, np.intp), ("a\nb",)), "mesh.tables"),
         (Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ()), "mesh.tables"),
     ],
-    ids=["cube", "no area", "unused part", "order of parts", "name", "empty"],
 )
 def test_a_mesh_is_written_as_obj_or_as_arrays_where_obj_does_not_hold_it(
     tmp_path: Path, mesh: Mesh, name: str
