@@ -28,7 +28,6 @@ from autocolor.files.scene_toml.scene_text import (
     edited_to,
     scene_text,
     tables_of,
-    without_empty,
 )
 from autocolor.files.scene_toml.toml_edit import edited_toml
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
@@ -76,7 +75,12 @@ def write_scene(
         try:
             refuse_output(target, overwrite=overwrite)
             check = guard(target)
-            old = _existing(target)
+            old = None
+            with suppress(InputError):
+                # A file that is no valid TOML is written anew.
+                present = read_bytes(target, LARGEST_TEXT)
+                entries_of(present)
+                old = present
             meshes = meshes_there(target.parent, scene.mesh, old)
             meshes = meshes or written_mesh(target.parent, scene.mesh, written)
             data = None if old is None else _edited(old, target, scene, meshes, complete)
@@ -110,16 +114,6 @@ def _target(path: str | os.PathLike[str]) -> Path:
     return target if suffix == ".toml" else target / SCENE_FILE
 
 
-def _existing(target: Path) -> bytes | None:
-    """The text of the existing scene file; None if the file is missing or no valid TOML."""
-    try:
-        data = read_bytes(target, LARGEST_TEXT)
-        parsed_toml(data, target.name)
-    except InputError:
-        return None
-    return data
-
-
 def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
     """The old text, edited until it gives the scene; None if it has another object, or no edit succeeds."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
@@ -136,7 +130,7 @@ def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bo
         # The angle stands in every table that has the key, else in the first.
         for table in [table for table in tables if "crease_angle" in table] or tables[:1]:
             table["crease_angle"] = mesh.crease_angle
-    wanted = {**document, **(without_empty(tables_of(scene), document) if complete else {}), "mesh": tables}
+    wanted = {**document, **(tables_of(scene) if complete else {}), "mesh": tables}
     data = edited_toml(old, wanted)
     return None if data is None else edited_to(data, scene, target, meshes.reports)
 

@@ -39,28 +39,22 @@ TABLES: Final = ("mesh", "parts", "surfaces")
 """The keys whose tables refer to each other, and are read together."""
 
 
-def read_scene_file(path: Path, *, outside: bool = False, surfaces: SurfaceSource = MATERIALS) -> SceneReport:
-    """The scene of a scene file, and what was repaired and created.
-
-    With `outside`, mesh files may be outside the scene's folder; `surfaces` is as in `read_scene`. Raises
-    InputError with every problem of the file and its meshes, MissingInputError if missing files are the only
-    problem.
-    """
-    return report_of_text(read_bytes(path, LARGEST_TEXT), path, outside=outside, surfaces=surfaces)
-
-
-def report_of_text(
-    data: bytes,
+def read_scene_file(
     path: Path,
     *,
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
+    data: bytes | None = None,
     meshes: list[MeshReport] | None = None,
 ) -> SceneReport:
-    """The scene that a file with this text would give at a path; see `read_scene_file`.
+    """The scene of a scene file, and what was repaired and created.
 
-    `meshes` are the meshes that the text names, if they were read before.
+    With `outside`, mesh files may be outside the scene's folder; `surfaces` is as in `read_scene`. `data` is
+    the text that the file would have, and `meshes` are the meshes that it names, if they were read before.
+    Raises InputError with every problem of the file and its meshes, MissingInputError if missing files are
+    the only problem.
     """
+    data = read_bytes(path, LARGEST_TEXT) if data is None else data
     document = parsed_toml(data, path.name)
     problems = SceneProblems(path.name, data, document)
 

@@ -8,13 +8,13 @@ lights, for example, depend on the view.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
-from autocolor.files.scene_toml.scene_file import report_of_text
+from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.toml_edit import FILE_TABLES, ORDERED, edited_toml, item_numbers
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.scene.columns import Row, difference, fields_of, from_plain, to_plain, with_values
@@ -41,8 +41,9 @@ def scene_text(
     entries: list[dict[str, Any]] = [dict(files) for files in mesh_files]
     if entries and not (without_defaults and scene.mesh.crease_angle == CREASE_ANGLE):
         entries[0]["crease_angle"] = scene.mesh.crease_angle
-    tables["mesh"] = entries
-    return (edited_toml(b"", without_empty(tables)) or b"").decode()
+    if entries:
+        tables["mesh"] = entries
+    return (edited_toml(b"", tables) or b"").decode()
 
 
 def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
@@ -55,15 +56,16 @@ def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
     del tables["name"]
     for name, field in fields_of(Scene).items():
         value = vars(scene)[name]
-        if sparse and field.default and value == field.default():
-            tables.pop(name, None)
-        elif name in BY_NAME:
+        if name in BY_NAME:
             tables[name] = {row.name: without_name(keys_of_row(row)) for row in value}
         elif isinstance(field.column.kind, RowList):
             tables[name] = [keys_of_row(row) for row in value]
+        elif sparse and field.default and value == field.default():
+            tables.pop(name, None)
         elif isinstance(value, Row) and name in tables:
             tables[name] = keys_of_row(value)
-    return tables
+    # Without the key, lights would be created.
+    return {key: value for key, value in tables.items() if value not in ([], {}) or key == "lights"}
 
 
 def _plain_row(row: Row) -> dict[str, object]:
@@ -103,25 +105,15 @@ def edited_to(data: bytes, scene: Scene, path: Path, reports: list[MeshReport]) 
         if edited is None or len(edited) > LARGEST_TEXT:
             return None
         try:
-            current = report_of_text(edited, path, meshes=reports).scene
+            current = read_scene_file(path, data=edited, meshes=reports).scene
         except InputError:
             return None
         if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
             return edited
         document = parsed_toml(edited, path.name)
         wanted = _changed(document, tables_of(current), tables_of(scene), tables_of(scene, sparse=True))
-        edited = edited_toml(edited, without_empty(wanted, document))
+        edited = edited_toml(edited, wanted)
     return None
-
-
-def without_empty(tables: Tables, present: Collection[str] = ()) -> dict[str, Any]:
-    """The tables of a scene without empty ones, unless their keys are present."""
-    # Without the key, lights would be created.
-    return {
-        key: value
-        for key, value in tables.items()
-        if value not in ([], {}) or key == "lights" or key in present
-    }
 
 
 def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:

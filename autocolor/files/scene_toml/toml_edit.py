@@ -133,9 +133,9 @@ def edited_toml(data: bytes, wanted: Document) -> bytes | None:
     return None
 
 
-def _keys(value: Any) -> list[str]:
-    """The keys of a table in their order; no keys of another value."""
-    return list(value) if isinstance(value, dict) else []
+def _keys(value: Any) -> list[Any]:
+    """The keys of a table in their order, or the numbers of the rows of an array; none of another value."""
+    return list(value if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else ())
 
 
 def _edited_text(text: str, old: Document, wanted: Document, moved: Collection[str]) -> str:
@@ -151,7 +151,7 @@ def _edited_text(text: str, old: Document, wanted: Document, moved: Collection[s
     for name in FILE_TABLES:
         if name not in inline or name in moved:
             _add_blocks(blocks, name, wanted.get(name))
-        _arrange(blocks, name, wanted)
+        _arrange(blocks, name, _keys(wanted.get(name)))
     given = {block.path for block in blocks}
     given |= {(*block.path, *key.path) for block in blocks for key in block.keys if key.written}
     above = {path[:end] for path in given for end in range(1, len(path) + 1)}
@@ -193,27 +193,29 @@ def _at(value: Any, path: KeyPath) -> Any:
 
 def _add_blocks(blocks: list[Block], name: str, table: Any) -> None:
     """Add the blocks of new tables below those of the same key, or at the end."""
-    paths: list[KeyPath] = [(name,)] if table else []
-    if isinstance(table, list):
-        paths = [(name, row) for row in range(len(table))]
-    elif table and all(isinstance(row, dict) for row in table.values()):
-        paths = [(name, key) for key in table]
+    paths: list[KeyPath] = [(name, key) for key in _keys(table)]
+    if isinstance(table, dict) and not all(isinstance(row, dict) for row in table.values()):
+        paths = [(name,)]
     present = {block.path[:2] for block in blocks}
-    last = {block.path[:1]: place for place, block in enumerate(blocks)}
-    place = last.get((name,), len(blocks) - 1)
-    for path in paths:
-        if path not in present:
-            place += 1
-            header = ".".join(toml_key(part) for part in path if isinstance(part, str))
-            head = f"[[{header}]]\n" if isinstance(table, list) else f"[{header}]\n"
-            blocks.insert(place, Block(path, head, apart=True))
+    place = max(
+        (number for number, block in enumerate(blocks, 1) if block.path[:1] == (name,)), default=len(blocks)
+    )
+    header = "[[{}]]\n" if isinstance(table, list) else "[{}]\n"
+    blocks[place:place] = [
+        Block(
+            path,
+            header.format(".".join(toml_key(part) for part in path if isinstance(part, str))),
+            apart=True,
+        )
+        for path in paths
+        if path not in present
+    ]
 
 
-def _arrange(blocks: list[Block], name: str, wanted: Document) -> None:
-    """Move the rows of a table to the wanted order."""
+def _arrange(blocks: list[Block], name: str, keys: Sequence[Any]) -> None:
+    """Move the rows of a table to the order of their keys."""
     rows = [block for block in blocks if len(block.path) > 1 and block.path[0] == name]
-    table = wanted.get(name, ())
-    order = {key: row for row, key in enumerate(table if isinstance(table, dict) else range(len(table)))}
+    order = {key: row for row, key in enumerate(keys)}
     arranged = sorted(rows, key=lambda block: order[block.path[1]])
     if arranged != rows:
         first = blocks.index(rows[0])

@@ -174,8 +174,6 @@ def toml_value(value: object) -> str:
 
 MOST_PROBLEMS: Final = 100
 
-LONGEST_SENTENCE: Final = 400
-
 
 class SceneProblems:
     """Collects the problems of one scene file and raises them in line order."""
@@ -236,8 +234,6 @@ class SceneProblems:
             where, depth = "[view]: ", 1
         line = self._line(path)
         sentence = problem._replace(path=path[depth:]).sentence
-        if len(sentence) > LONGEST_SENTENCE:
-            sentence = f"{sentence[:LONGEST_SENTENCE]}..."
         return line, f"{self.place}{f', line {line}' if line else ''}, {where}{sentence}"
 
     def _line(self, path: KeyPath) -> int:

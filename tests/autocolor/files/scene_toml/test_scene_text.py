@@ -8,7 +8,7 @@ from hypothesis import given
 from autocolor import Light, Scene
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport
-from autocolor.files.scene_toml.scene_file import report_of_text
+from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_text import (
     edited_to,
 )
@@ -82,7 +82,7 @@ def meshes(tmp_path_factory: pytest.TempPathFactory) -> list[MeshReport]:
 
 
 def read(text: bytes, meshes: list[MeshReport]) -> Scene:
-    return report_of_text(text, PLACE, meshes=meshes).scene
+    return read_scene_file(PLACE, data=text, meshes=meshes).scene
 
 
 def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
@@ -103,17 +103,6 @@ def test_a_file_in_any_style_is_changed_to_any_scene(
     assert after.count("# Mine.") == 1
     # Once there, it stays.
     assert edited(after, scene, meshes) == after
-
-
-def test_surfaces_in_another_order_are_written_in_that_order(meshes: list[MeshReport]) -> None:
-    for text in (INLINE, HEADERS):
-        scene = read(text.encode(), meshes)
-        one, other = scene.surfaces
-        new = one.replace(name="new")
-        for surfaces in ((other, one), (one, other, new), (other, new, one)):
-            after = edited(text, scene.replace(surfaces=surfaces), meshes)
-            assert read(after.encode(), meshes).surfaces == surfaces
-            assert after.startswith("# Mine.\n")
 
 
 def test_a_renamed_light_keeps_its_place_and_its_comment(meshes: list[MeshReport]) -> None:

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from autocolor import InputError
 from autocolor.errors import MissingInputError
 from autocolor.files.scene_toml.toml_text import (
-    LONGEST_SENTENCE,
     MOST_PROBLEMS,
     SceneProblems,
     key_lines,
@@ -171,11 +170,3 @@ def test_a_report_has_at_most_so_many_problems_and_says_if_there_may_be_more() -
     sentences = sentences_of(problems)
     assert len(sentences) == MOST_PROBLEMS + 1
     assert sentences[-1] == "scene.toml: there may be more problems; correct these first"
-
-
-@given(st.text(min_size=1, max_size=2000))
-def test_a_sentence_is_short_whatever_a_file_holds(text: str) -> None:
-    problems = problems_of()
-    problems.note(("surfaces", text, text), text)
-    (sentence,) = sentences_of(problems)
-    assert len(sentence) <= LONGEST_SENTENCE + len("scene.toml, line 14, [surfaces.]: ...") + 60
