@@ -96,8 +96,8 @@ direction = [0, 0, 1]
             f"{AT} 11, [surfaces.body]: there is no field 'two_side'; did you mean 'two_sided'?\n"
             f"{AT} 12, lights[1] 'key': position {VECTOR} missing; add it\n"
             f"{AT} 15, lights[2] 'key': name must be unique, not the same as lights[1]; rename it\n"
-            f"{AT} 17, lights[2] 'key': flaps.z: the minimum must be at most the maximum, not 3 to 2; exchange"
-            " them\n"
+            f"{AT} 17, lights[2] 'key': flaps.z: the minimum must be at most the maximum, not 3 to 2;"
+            " exchange them\n"
             f"{AT} 19, lights[2] 'key': half_spaces.'my door'.point {VECTOR} [0, 0]",
         ),
         (

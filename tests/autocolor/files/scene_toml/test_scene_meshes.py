@@ -158,10 +158,3 @@ def test_the_files_that_a_scene_file_names_come_first_unless_they_hold_another_m
         assert found.entries == (entry,)
     (folder / "car.obj").unlink()
     assert meshes_there(folder, mesh, None) is None
-
-
-def test_a_link_out_of_the_folder_is_not_followed(folder: Path) -> None:
-    (folder / "inner").mkdir()
-    (folder / "inner" / "car.obj").symlink_to(folder / "car.obj")
-    mesh = read_scene(folder / "inner" / "car.obj").mesh
-    assert meshes_there(folder / "inner", mesh, None) is None

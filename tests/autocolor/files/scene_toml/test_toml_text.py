@@ -25,8 +25,8 @@ test_what_is_no_toml_is_refused = refused(
     [
         (
             b"a = 1\nb 2\n",
-            "scene.toml: it must be valid TOML (Expected '=' after a key in a key/value pair (at line 2, column"
-            " 3)); correct it",
+            "scene.toml: it must be valid TOML (Expected '=' after a key in a key/value pair (at line 2,"
+            " column 3)); correct it",
         ),
         (
             b"a = 1\n\0",
