@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
 
@@ -94,11 +95,13 @@ def item_numbers(old: Sequence[Any], new: Sequence[Any]) -> list[int | None]:
     left: dict[object, list[int]] = {}
     for number, item in enumerate(old):
         left.setdefault(_identity(item), []).append(number)
-    numbers = [left[key].pop(0) if left.get(key := _identity(item)) else None for item in new]
-    others = iter(
-        sorted(number for numbers in left.values() for number in numbers) if len(old) == len(new) else ()
-    )
-    return [next(others, None) if number is None else number for number in numbers]
+    numbers: list[int | None] = [
+        left[key].pop(0) if left.get(key := _identity(item)) else None for item in new
+    ]
+    if len(old) == len(new):
+        others = iter(sorted(set(range(len(old))) - set(numbers)))
+        numbers = [next(others) if number is None else number for number in numbers]
+    return numbers
 
 
 def _identity(item: Any) -> str:
@@ -261,29 +264,24 @@ def _joined(blocks: Sequence[Block]) -> str:
 def _with_value(key: Key, table: KeyPath, wanted: Document, moved: Collection[str]) -> Key:
     """The key of a table with its wanted value; without text if it has none, or is to be written anew."""
     path = (*table, *key.path)
-    value = _at(wanted, path)
-    written = ""
-    if value is not None and not (path[0] in moved and len(table) < 2):
-        written = _edited(key, value)
-    if value is not None and not written and "#" in key.written:
-        LOG.warning("%s is written anew, without its comments", ".".join(map(str, path)))
-    return key._replace(written=written)
-
-
-def _edited(key: Key, value: Any) -> str:
-    """The text of a key edited by tomlkit to another value; empty if tomlkit cannot do it."""
-    old = tomllib.loads(key.written)
+    new = _at(wanted, path)
+    if new is None:
+        return key._replace(written="")
     for name in reversed(key.path):
-        value = {name: value}
-    if repr(old) == repr(value):
-        return key.written
-    try:
-        document = tomlkit.parse(key.written)
-        _set_keys(document, old, value)
-        edited = tomlkit.dumps(document)
-        return edited if tomllib.loads(edited) == value else ""
-    except (TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
-        return ""
+        new = {name: new}
+    old = tomllib.loads(key.written)
+    if path[0] not in moved or len(table) > 1:
+        if repr(old) == repr(new):
+            return key
+        with suppress(TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
+            document = tomlkit.parse(key.written)
+            _set_keys(document, old, new)
+            edited = tomlkit.dumps(document)
+            if tomllib.loads(edited) == new:
+                return key._replace(written=edited)
+    if "#" in key.written:
+        LOG.warning("%s is written anew, without its comments", ".".join(map(str, path)))
+    return key._replace(written="")
 
 
 def _set_keys(table: Any, old: Document, new: Document) -> None:

@@ -55,11 +55,8 @@ def parsed_toml(data: bytes, place: str, what: str = "a scene file") -> dict[str
         kind = token.lastgroup
         nested = max(0, nested + (kind == "open") - (kind == "close"))
         parts = parts + (kind == "dot") if kind in ("dot", "word", "string", "space") else 1
-        if (
-            nested > MOST_NESTED
-            or parts > MOST_KEY_PARTS
-            or (kind == "word" and len(token[0]) > LONGEST_WORD)
-        ):
+        is_long = kind == "word" and len(token[0]) > LONGEST_WORD
+        if nested > MOST_NESTED or parts > MOST_KEY_PARTS or is_long:
             raise InputError(
                 f"{place}, line {text.count(chr(10), 0, token.start()) + 1}: {what} must have at most"
                 f" {MOST_NESTED} brackets in each other, {MOST_KEY_PARTS} parts between the dots of a key and"
@@ -123,19 +120,6 @@ def _path(table: KeyPath, text: str, rows: dict[KeyPath, int], is_row: bool) -> 
     return path
 
 
-def key_lines(data: bytes) -> dict[KeyPath, int]:
-    """The line of each table and key of a valid TOML text, by its path; rows of arrays count from 0."""
-    text = data.decode().replace("\r\n", "\n")
-    lines: dict[KeyPath, int] = {}
-    line, before = 1, 0
-    for statement in statements_of(text):
-        line += text.count("\n", before, statement.start)
-        before = statement.start
-        for end in range(1, len(statement.path) + 1):
-            lines.setdefault(statement.path[:end], line)
-    return lines
-
-
 # Writing.
 
 BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
@@ -144,7 +128,7 @@ BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 def key_text(path: KeyPath, value: object) -> str:
     """The line of a key; of a table of tables, such as flaps, a line for each inner table."""
     if isinstance(value, Mapping) and value and all(isinstance(inner, Mapping) for inner in value.values()):
-        return "".join(f"{key_text((*path, name), inner)}" for name, inner in value.items())
+        return "".join(key_text((*path, name), inner) for name, inner in value.items())
     return f"{'.'.join(toml_key(str(name)) for name in path)} = {toml_value(value)}\n"
 
 
@@ -191,7 +175,16 @@ class SceneProblems:
 
     @cached_property
     def _lines(self) -> dict[KeyPath, int]:
-        return key_lines(self.data)
+        """The line of each table and key, by its path; rows of arrays count from 0."""
+        text = self.data.decode().replace("\r\n", "\n")
+        lines: dict[KeyPath, int] = {}
+        line, before = 1, 0
+        for statement in statements_of(text):
+            line += text.count("\n", before, statement.start)
+            before = statement.start
+            for end in range(1, len(statement.path) + 1):
+                lines.setdefault(statement.path[:end], line)
+        return lines
 
     def note(self, path: KeyPath, text: str) -> None:
         """Add a problem of the value at a path."""

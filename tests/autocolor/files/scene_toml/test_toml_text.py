@@ -11,7 +11,6 @@ from autocolor.errors import MissingInputError
 from autocolor.files.scene_toml.toml_text import (
     MOST_PROBLEMS,
     SceneProblems,
-    key_lines,
     parsed_toml,
     toml_value,
 )
@@ -78,10 +77,10 @@ def test_brackets_and_dots_in_texts_and_comments_do_not_count() -> None:
 @given(st.binary(max_size=100) | st.text("ab.=[]{}\"'\\#,1-: \n\r\t", max_size=100).map(str.encode))
 def test_any_bytes_are_parsed_or_refused(data: bytes) -> None:
     try:
-        parsed_toml(data, "scene.toml")
+        problems = SceneProblems("scene.toml", data, parsed_toml(data, "scene.toml"))
     except InputError:
         return
-    key_lines(data)
+    problems.note(("a",), "must be so")
 
 
 @given(st.text(st.characters(exclude_categories=["Cs"])))
