@@ -50,12 +50,8 @@ def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bo
     rig = scene.rig if isinstance(scene, Scene) else scene
     if not isinstance(rig, Rig):
         raise UsageError(f"a rig must be of a Scene, not {shown(rig)}; give the scene with the lights")
-    tables = {
-        "minimum": rig.minimum,
-        "maximum": rig.maximum,
-        "lights": [sparse_row(light) for light in rig.lights],
-    }
-    data = edited_toml(b"", tables) or b""
+    lights = [sparse_row(light) for light in rig.lights]
+    data = edited_toml(b"", {"minimum": rig.minimum, "maximum": rig.maximum, "lights": lights}) or b""
     if len(data) > LARGEST_TEXT:
         raise OutputError(
             f"{path}: a rig file must have at most {LARGEST_TEXT:,} bytes, not {len(data):,}; remove lights"

@@ -24,11 +24,7 @@ from autocolor.files.scene_toml.scene_meshes import (
     reports_of,
     written_mesh,
 )
-from autocolor.files.scene_toml.scene_text import (
-    edited_to,
-    scene_text,
-    tables_of,
-)
+from autocolor.files.scene_toml.scene_text import edited_to, scene_text, tables_of
 from autocolor.files.scene_toml.toml_edit import edited_toml
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import write_store

@@ -19,14 +19,7 @@ from autocolor.files.reading import read_bytes
 from autocolor.files.scene_report import OMITTED, SceneReport, scene_report
 from autocolor.files.scene_toml.scene_meshes import meshes_of
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml
-from autocolor.scene.columns import (
-    Problem,
-    RowError,
-    SomeRow,
-    keys_of,
-    replaced,
-    unknown_key,
-)
+from autocolor.scene.columns import Problem, RowError, SomeRow, keys_of, replaced, unknown_key
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.defaults import default_surface
 from autocolor.scene.scene import Scene
@@ -34,9 +27,6 @@ from autocolor.scene.surfaces import MOST_SURFACES, Part
 
 FILE_KEYS: Final = tuple(key for key in keys_of(Scene) if key != "name")
 """The keys of a scene file; the scene's name is that of its folder or file."""
-
-TABLES: Final = ("mesh", "parts", "surfaces")
-"""The keys whose tables refer to each other, and are read together."""
 
 
 def read_scene_file(
@@ -62,7 +52,7 @@ def read_scene_file(
     for key, value in document.items():
         if key not in FILE_KEYS and not problems.full:
             problems.note_all([unknown_key(key, FILE_KEYS)])
-        elif key in FILE_KEYS and key not in TABLES:
+        elif key in FILE_KEYS and key not in ("mesh", "parts", "surfaces"):
             refused: list[Problem] = []
             fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), refused)
             problems.note_all(refused)

@@ -131,18 +131,15 @@ def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> 
             if key in sparse:
                 table[key] = sparse[key]
         elif isinstance(value, Mapping) and isinstance(before[key], Mapping) and isinstance(given, Mapping):
-            inner = _changed(given, before[key], value, sparse.get(key, value))
+            fresh = sparse.get(key, value)
+            table[key] = inner = _changed(given, before[key], value, fresh)
             if key in ORDERED and list(before[key]) != list(value):
-                inner = {
-                    name: inner.get(name, sparse.get(key, value).get(name, value[name])) for name in value
-                }
-            table[key] = inner
+                table[key] = {name: inner.get(name, fresh.get(name, value[name])) for name in value}
         elif isinstance(value, list) and key in FILE_TABLES:
+            numbers = item_numbers(given or (), value)
             table[key] = [
                 row if number is None else _changed(given[number], before[key][number], whole, row)
-                for number, whole, row in zip(
-                    item_numbers(given or (), value), value, sparse.get(key, ()), strict=True
-                )
+                for number, whole, row in zip(numbers, value, sparse.get(key, ()), strict=True)
             ]
         else:
             table[key] = sparse.get(key, value) if isinstance(value, Mapping) else value

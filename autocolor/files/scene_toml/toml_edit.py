@@ -39,7 +39,7 @@ Document = Mapping[str, Any]
 """The values of a TOML text: tables are dictionaries, arrays are lists."""
 
 
-class Key(NamedTuple):
+class WrittenKey(NamedTuple):
     """A key with its value, and the comments and empty lines above it; the path is from the block's table."""
 
     path: KeyPath
@@ -56,7 +56,7 @@ class Block:
 
     path: KeyPath
     head: str
-    keys: list[Key] = field(default_factory=list)
+    keys: list[WrittenKey] = field(default_factory=list)
     tail: str = ""
     apart: bool = False
 
@@ -79,7 +79,7 @@ def blocks_of(text: str) -> list[Block]:
             blocks[-1].tail = above[:start]
             blocks.append(Block(statement.path, above[start:] + written))
         else:
-            blocks[-1].keys.append(Key(statement.path[len(blocks[-1].path) :], above, written))
+            blocks[-1].keys.append(WrittenKey(statement.path[len(blocks[-1].path) :], above, written))
     blocks[-1].tail = text[end:]
     return blocks
 
@@ -166,7 +166,7 @@ def _edited_text(text: str, old: Document, wanted: Document, moved: Collection[s
         if added and not block.keys and not block.path:
             # New keys of a file go below the comment at its top.
             block.head, block.tail = block.tail, "\n"
-        block.keys += [Key((), "", text) for text in added]
+        block.keys += [WrittenKey((), "", text) for text in added]
     return _joined(blocks)
 
 
@@ -261,7 +261,7 @@ def _joined(blocks: Sequence[Block]) -> str:
 # One key.
 
 
-def _with_value(key: Key, table: KeyPath, wanted: Document, moved: Collection[str]) -> Key:
+def _with_value(key: WrittenKey, table: KeyPath, wanted: Document, moved: Collection[str]) -> WrittenKey:
     """The key of a table with its wanted value; without text if it has none, or is to be written anew."""
     path = (*table, *key.path)
     new = _at(wanted, path)

@@ -7,15 +7,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 
-from autocolor import (
-    Light,
-    OutputError,
-    Rig,
-    Scene,
-    read_rig,
-    scene_of,
-    write_rig,
-)
+from autocolor import Light, OutputError, Rig, Scene, read_rig, scene_of, write_rig
 from autocolor.errors import AutocolorError
 from autocolor.files.rig_file import is_rig
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT

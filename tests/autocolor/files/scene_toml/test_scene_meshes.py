@@ -10,13 +10,7 @@ import pytest
 
 from autocolor import Mesh, read_scene, render, write_picture
 from autocolor.errors import InputError
-from autocolor.files.scene_toml.scene_meshes import (
-    SOURCES,
-    MeshSource,
-    meshes_of,
-    meshes_there,
-    written_mesh,
-)
+from autocolor.files.scene_toml.scene_meshes import SOURCES, MeshSource, meshes_of, meshes_there, written_mesh
 from autocolor.files.scene_toml.toml_text import SceneProblems
 from tests.small import cube
 from tests.tables import refused

@@ -9,9 +9,7 @@ from autocolor import Light, Scene
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_toml.scene_file import read_scene_file
-from autocolor.files.scene_toml.scene_text import (
-    edited_to,
-)
+from autocolor.files.scene_toml.scene_text import edited_to
 from autocolor.scene.columns import with_values
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.strategies import of_mesh

@@ -8,12 +8,7 @@ from hypothesis import strategies as st
 
 from autocolor import InputError
 from autocolor.errors import MissingInputError
-from autocolor.files.scene_toml.toml_text import (
-    MOST_PROBLEMS,
-    SceneProblems,
-    parsed_toml,
-    toml_value,
-)
+from autocolor.files.scene_toml.toml_text import MOST_PROBLEMS, SceneProblems, parsed_toml, toml_value
 from autocolor.scene.columns import Problem
 from tests.tables import refused
 
