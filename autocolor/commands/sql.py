@@ -115,9 +115,9 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, sta
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
     path = Path(source.path)
     if not is_store(path):
-        from autocolor.files.scene_writing import write_scene_with_tables
+        from autocolor.files.scene_writing import write_scene
 
-        tell_written(*map(str, write_scene_with_tables(path, tables.scene(), overwrite=True, complete=False)))
+        tell_written(*map(str, write_scene(path, tables.scene(), overwrite=True)))
 
 
 MEASURED: Final = 1000

@@ -38,8 +38,8 @@ from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import status_of
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
-from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
-from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.scene_toml.scene_meshes import SOURCES, MeshSource
+from autocolor.files.scene_writing import write_scene
 from autocolor.files.writing import table_exists
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.mesh import Mesh
@@ -86,9 +86,7 @@ SCENE: Final = SceneFormat(
     suffixes=(".toml",),
     in_folder=(SCENE_FILE,),
     read=read_scene_file,
-    write=lambda path, scene, overwrite: write_scene_with_tables(
-        path, scene, overwrite=overwrite, complete=False
-    ),
+    write=lambda path, scene, overwrite: write_scene(path, scene, overwrite=overwrite),
 )
 
 STORE: Final = SceneFormat(
@@ -171,7 +169,7 @@ def read_scene_with_report(
         folder = path if path.is_dir() else path.parent
     if report.mesh_files:
         source_path = scene_file and scene_file.resolve()
-        keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, source_path))
+        SOURCES[report.scene.mesh] = MeshSource(folder.resolve(), report.mesh_files, source_path)
     return report
 
 

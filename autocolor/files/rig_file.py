@@ -20,8 +20,8 @@ from autocolor.checks import shown
 from autocolor.errors import AutocolorError, OutputError, UsageError
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_toml.scene_text import sparse_row
-from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml, table_text
-from autocolor.files.scene_writing import refuse_names
+from autocolor.files.scene_toml.toml_edit import edited_toml
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.scene.columns import RowError, from_plain
 from autocolor.scene.rigs import Rig
@@ -50,12 +50,8 @@ def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bo
     rig = scene.rig if isinstance(scene, Scene) else scene
     if not isinstance(rig, Rig):
         raise UsageError(f"a rig must be of a Scene, not {shown(rig)}; give the scene with the lights")
-    refuse_names(rig.lights)
-    bounds: dict[str, object] = {"minimum": rig.minimum, "maximum": rig.maximum}
-    if not rig.lights:
-        bounds["lights"] = ()
-    tables = [table_text("[[lights]]", sparse_row(light)) for light in rig.lights]
-    data = "\n".join([table_text("", bounds), *tables]).encode()
+    lights = [sparse_row(light) for light in rig.lights]
+    data = edited_toml(b"", {"minimum": rig.minimum, "maximum": rig.maximum, "lights": lights}) or b""
     if len(data) > LARGEST_TEXT:
         raise OutputError(
             f"{path}: a rig file must have at most {LARGEST_TEXT:,} bytes, not {len(data):,}; remove lights"
