@@ -26,7 +26,7 @@ from autocolor.files.formats import (
     suffix_rule,
     suffixes_of,
 )
-from autocolor.files.meshes.obj_writing import beyond_materials
+from autocolor.files.meshes.obj import beyond_materials
 from autocolor.files.opening import FORMATS, SCENE
 from autocolor.files.paths import SCENE_FILE
 from autocolor.scene.columns import fields_of

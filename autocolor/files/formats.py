@@ -20,8 +20,7 @@ from autocolor.files.foreign.reader import FOREIGN, read_foreign
 from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.csv_tables import CSV_FILES, read_csv_tables, write_csv_tables
 from autocolor.files.meshes.npy_tables import MAGIC, NODES, POLYGONS, read_npy_tables, write_npy_tables
-from autocolor.files.meshes.obj import begins_as_obj, read_obj
-from autocolor.files.meshes.obj_writing import write_obj
+from autocolor.files.meshes.obj import begins_as_obj, read_obj, write_obj
 from autocolor.files.meshes.off import begins_as_off, read_off
 from autocolor.files.meshes.ply import ply_bytes, read_ply
 from autocolor.files.meshes.ply_elements import begins_as_ply

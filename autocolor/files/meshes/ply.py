@@ -136,8 +136,6 @@ def _read(path: Path) -> tuple[RawPolygons, list[str]]:
         part_numbers,
         part_names,
         scalars.scalars,
-        # Lines would keep the text of the file in memory.
-        lambda row: f"{FACE} {row}",
         normals,
         None if normals is None else corners,
     )

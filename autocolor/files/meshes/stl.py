@@ -57,7 +57,6 @@ def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
         np.full(len(rows) // 3, 3, np.intp),
         part_numbers,
         names,
-        place_of=lambda row: f"facet {row + 1}",
     )
     del points, rows
     return repaired(polygons, path.name, placement, skipped=skipped)

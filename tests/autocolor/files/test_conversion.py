@@ -10,7 +10,7 @@ from autocolor import Mesh, Scene, read_scene, scene_of
 from autocolor.errors import OutputError, UsageError
 from autocolor.files.conversion import OUTPUTS, left_out, output_named, output_of
 from autocolor.files.formats import PARTS, QUADS, SCALARS, Format
-from autocolor.files.meshes.obj_writing import material_names, write_obj
+from autocolor.files.meshes.obj import material_names, write_obj
 from autocolor.files.opening import SCENE
 from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.surfaces import Surface

@@ -326,7 +326,7 @@ WRONG: list[tuple[Mapping[str, Columns], str]] = [
     ),
     (
         {"vertex": xyz(), "face": corners("int", [0, 1] * 500, [0, 1, 2] * 400)},
-        ", face 1: a polygon must have at most 1,000 corners, not 1,200; split it",
+        ", polygon 2: a polygon must have at most 1,000 corners, not 1,200; split it",
     ),
     (
         {"vertex": xyz(), "tristrips": corners("int", (0, 1, 2))},
