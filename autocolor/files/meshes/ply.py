@@ -41,7 +41,7 @@ from autocolor.scene.scalar import NODE, POLYGON
 VERTEX: Final = "vertex"
 FACE: Final = "face"
 STRIPS: Final = "tristrips"
-NO_ROWS: Final = ElementRows(0, {}, str)
+NO_ROWS: Final = ElementRows(0, {})
 AXES: Final = ("x", "y", "z")
 CORNERS: Final = ("vertex_indices", "vertex_index")
 
@@ -164,7 +164,7 @@ def _coordinates(vertices: ElementRows, place: str) -> Floats:
     if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
         row, axis = np.argwhere(~(np.abs(coordinates) <= LARGEST_COORDINATE))[0].tolist()
         raise InputError(
-            f"{vertices.place_of(row)}: a coordinate must be a finite number of at most 1e30 in size, not"
+            f"{place}, {VERTEX} {row}: a coordinate must be a finite number of at most 1e30 in size, not"
             f" {coordinates[row, axis]:g}; correct it"
         )
     return coordinates
@@ -190,7 +190,7 @@ def _corners(faces: ElementRows, nodes: int, place: str) -> tuple[Indices, Indic
         corner = int(is_node.argmin())
         row = int(np.searchsorted(np.cumsum(counts), corner, side="right"))
         raise InputError(
-            f"{faces.place_of(row)}: a corner must be the number of one of {nodes:,} nodes, from 0 on, not"
+            f"{place}, {FACE} {row}: a corner must be the number of one of {nodes:,} nodes, from 0 on, not"
             f" {values[corner]:.15g}; correct it"
         )
     return values.astype(np.intp, copy=False), counts

@@ -114,7 +114,7 @@ def test_normals_are_those_of_the_corners_and_missing_where_there_are_none(path:
 
 
 NUMBERS = ("nan", "0x10", "1_0", "1,5", "1d", "1-2", *(f"{sign}1.0000000000000002e30" for sign in ("", "-")))
-NO_WHOLES = ("1.5", "x", "1e2", "\u0663", "9" * 19, "-")
+NO_WHOLES = ("1.5", "x", "\u0663", "9" * 19, "-")
 NO_CORNERS = (("/1", "/1"), ("1/2/3/4", "1/2/3/4"), ("1///2", "/2"))
 NODES_OF = "a corner must be one of the file's {} nodes, or count back to one, not {}; correct it"
 
@@ -146,7 +146,7 @@ test_what_is_refused = refused(
                 )
                 for corner, word in NO_CORNERS
             ),
-            (f"{SQUARE}\nf 1 2 {'9' * 18}\nf 1 2 3\n", f", line 6: {NODES_OF.format(4, '9' * 18)}"),
+            (f"{SQUARE}\nf 1 2 {'9' * 15}\nf 1 2 3\n", f", line 6: {NODES_OF.format(4, '9' * 15)}"),
             (
                 f"{SQUARE}f 1 \\\n2 3\nf 1 2 x\n",
                 ", line 7: a corner must be a whole number, not 'x'; correct it",

@@ -176,7 +176,7 @@ test_a_wrong_header_is_refused = refused(
         (b"ply\nend_header\n", "a.ply: a header must have a line 'format', not none; export it again"),
         (
             header(FACE)[:-11],
-            "a.ply: a header must have a line 'end_header' within 16,777,216 bytes; export it again",
+            "a.ply: a header must have a line 'end_header', not none; export it again",
         ),
         *(
             (
@@ -199,8 +199,8 @@ test_a_wrong_header_is_refused = refused(
 
 
 def test_an_element_may_have_no_properties_and_a_header_no_last_line_feed(path: Path) -> None:
-    report = read(path, plate().replace(b"end_header", b"element empty 2\nelement none 0\nend_header"))
-    assert report.repairs == ("a.ply: skipped elements 'empty': 2",)
+    report = read(path, plate().replace(b"end_header", b"element none 0\nend_header"))
+    assert report.repairs == ()
     assert "must have the numbers x, y and z, not only none" in refusal(read, path, header()[:-1])
 
 
@@ -339,12 +339,8 @@ test_what_is_refused = refused(
     [(ply_file(elements), f"a.ply{sentence}") for elements, sentence in WRONG]
     + [
         (
-            plate(order="", breaks="\n\n", corners=[(0, 1, 9)], vertex={"double z2": [0, 0, value, 0]}),
-            f"a.ply, line {sentence}; correct it",
-        )
-        for value, sentence in (
-            (0, f"19: {CORNER} 9"),
-            ("0x1", "15: a value must be a decimal number, nan or inf, not '0x1'"),
+            plate(order="", breaks="\n\n", vertex={"double z2": [0, 0, "0x1", 0]}),
+            "a.ply, line 15: a value must be a decimal number, nan or inf, not '0x1'; correct it",
         )
     ],
 )
