@@ -22,8 +22,6 @@ from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import name_of
 from autocolor.files.reading import HEAD, shown, text_lines, text_problem
 
-CUT_SHORT: Final = "the file is cut short or its header is wrong, export it again"
-
 ORDERS: Final = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
 """The byte order of numbers in each format; none in text."""
 
@@ -56,6 +54,12 @@ class Element(NamedTuple):
 
     rows: int
     properties: dict[str, Property]
+
+    @property
+    def in_text(self) -> Element:
+        """The element with the types of numbers that are parsed."""
+        kinds = {name: Property("f8", each.count_type and "f8") for name, each in self.properties.items()}
+        return Element(self.rows, kinds)
 
 
 class PlyHeader(NamedTuple):
@@ -151,24 +155,45 @@ class _WrongRowError(Exception):
     """A row of an element has other values than the header says, or ends after the file."""
 
 
-def read_binary(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], list[str]]:
-    """The elements of a file by name, and a message if bytes follow the last element.
+def read_elements(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], list[str]]:
+    """The elements of a file by name, and a message if bytes or lines follow the last element.
 
-    `place` is the file's name in messages. Raises InputError if the file is cut short.
+    `place` is the file's name in messages. Raises InputError.
     """
-    at = header.length
     elements: dict[str, ElementRows] = {}
+    at, end, text = header.length, len(data), None
+    if not header.order:
+        # Empty lines stand for the header, so that line numbers are those of the file.
+        body = text_lines(data[at:], place, "an ascii PLY file")
+        text = NumberText(b"\n" * header.lines + body, place)
+        numbers = text.values(0, len(text)).data
+        lines = np.append(text.lines(), len(text))
+        at, end = 0, len(lines) - 1
     for name, element in header.elements.items():
         try:
-            columns, at = _binary_columns(data, at, element, header.order)
-        except _WrongRowError:
+            if text is None:
+                columns, at = _binary_columns(data, at, element, header.order)
+            else:
+                bounds = lines[at : at + element.rows + 1]
+                if len(bounds) <= element.rows:
+                    raise _WrongRowError
+                columns = _columns(element.in_text, bounds * 8, numbers, "=")
+                at += element.rows
+        except _WrongRowError as error:
+            if text is None or not error.args:
+                raise InputError(
+                    f"{place}: {element.rows:,} elements {name!r} must end within the file, with lists of 0"
+                    " or more values; the file is cut short or its header is wrong, export it again"
+                ) from None
+            properties = listed([*islice(element.properties, 8)] or ["none"])
+            line = text.line(int(bounds[error.args[0]]))
             raise InputError(
-                f"{place}: {element.rows:,} elements {name!r} must end within the file, with lists of 0 or"
-                f" more values; {CUT_SHORT}"
+                f"{place}, line {line}: a line of an element {name!r} must have the values of {properties},"
+                " with the count before each list, and no others; correct it"
             ) from None
         elements[name] = ElementRows(element.rows, columns)
-    left = len(data) - at
-    return elements, [f"skipped bytes after the last element: {left:,}"] if left else []
+    unit = "bytes" if text is None else "lines"
+    return elements, [f"skipped {unit} after the last element: {end - at:,}"] if at < end else []
 
 
 def _binary_columns(data: bytes, at: int, element: Element, order: str) -> tuple[dict[str, Column], int]:
@@ -199,16 +224,15 @@ def _bounds(data: bytes, at: int, element: Element, order: str) -> list[int]:
             tail = 0
     byte_order: Literal["little", "big"] = "big" if order == ">" else "little"
     bounds = [at]
-    try:
-        if [kind for kind, *_ in lists] == ["u1"]:
-            # Measured: a fifth of the time of the general case below.
-            _, begin, end, width = lists[0]
+    if [kind for kind, *_ in lists] == ["u1"]:
+        # Measured: a fifth of the time of the general case below.
+        _, begin, end, width = lists[0]
+        with suppress(IndexError):
             for _ in range(element.rows):
                 at += end + data[at + begin] * width + tail
                 bounds.append(at)
             return bounds
-    except IndexError:
-        raise _WrongRowError from None
+        raise _WrongRowError
     for _ in range(element.rows):
         for kind, begin, end, width in lists:
             count = int.from_bytes(data[at + begin : at + end], byte_order, signed=kind[0] == "i")
@@ -218,41 +242,6 @@ def _bounds(data: bytes, at: int, element: Element, order: str) -> list[int]:
         at += tail
         bounds.append(at)
     return bounds
-
-
-def read_text(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], list[str]]:
-    """The elements of a file by name, and a message if lines follow the last element.
-
-    `place` is the file's name in messages. Raises InputError.
-    """
-    # Empty lines stand for the header, so that line numbers are those of the file.
-    body = text_lines(data[header.length :], place, "an ascii PLY file")
-    text = NumberText(b"\n" * header.lines + body, place)
-    numbers = text.values(0, len(text))
-    lines = np.append(text.lines(), len(text))
-    elements: dict[str, ElementRows] = {}
-    row = 0
-    for name, element in header.elements.items():
-        bounds = lines[row : row + element.rows + 1]
-        if len(bounds) <= element.rows:
-            raise InputError(
-                f"{place}: there must be {element.rows:,} elements {name!r}, not {len(bounds) - 1:,};"
-                f" {CUT_SHORT}"
-            )
-        kinds = {name: Property("f8", each.count_type and "f8") for name, each in element.properties.items()}
-        try:
-            columns = _columns(Element(element.rows, kinds), bounds * 8, numbers.data, "=")
-        except _WrongRowError as error:
-            properties = listed([*islice(kinds, 8)] or ["none"])
-            line = text.line(int(bounds[error.args[0]]))
-            raise InputError(
-                f"{place}, line {line}: a line of an element {name!r} must have the values of {properties},"
-                " with the count before each list, and no others; correct it"
-            ) from None
-        elements[name] = ElementRows(element.rows, columns)
-        row += element.rows
-    more = len(lines) - 1 - row
-    return elements, [f"skipped lines after the last element: {more:,}"] if more else []
 
 
 def _columns(

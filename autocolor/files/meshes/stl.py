@@ -115,9 +115,6 @@ def read_binary(data: bytes, place: str) -> tuple[Singles, list[str]]:
     return corners, [f"skipped bytes after the last triangle: {left:,}"] if left else []
 
 
-TITLE: Final = b"binary STL, written by autocolor"
-"""The beginning of a file that is written; it must not be the word `solid`."""
-
 POLYGONS_AT_ONCE: Final = 1 << 16
 
 TRIANGLES_OF: Final = np.array([[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]], [[0, 1, 2], [0, 0, 0]]])
@@ -140,7 +137,8 @@ def stl_bytes(mesh: Mesh) -> bytes:
         triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
         pieces.append(_records(mesh.coordinates[triangles]).tobytes())
         count += len(triangles)
-    pieces[0] = TITLE.ljust(BEFORE_TRIANGLES - 4) + count.to_bytes(4, "little")
+    # The text must not begin with the word `solid`.
+    pieces[0] = b"binary STL, written by autocolor".ljust(BEFORE_TRIANGLES - 4) + count.to_bytes(4, "little")
     return b"".join(pieces)
 
 
@@ -182,12 +180,12 @@ BLOCK: Final = 1 << 21
 SOLID: Final = re.compile(rb"^[ \t]*(end[ \t]*)?solid\b([^\n]*)$", re.MULTILINE | re.IGNORECASE)
 ENDFACET: Final = re.compile(rb"end[ \t]*facet\s", re.IGNORECASE)
 
-HABITS: Final = re.compile(
-    rb"\bend[ \t]+(?P<end>loop|facet)\b"
-    rb"|\bfacet(?P<normal>\s+(?:normal\s+)?)(?=outer\b)"
-    rb"|(?:#|;|!|//|^[ \t]*colou?r\b)[^\n]*",
-    re.MULTILINE | re.IGNORECASE,
+HABITS: Final = (
+    (re.compile(rb"(?:#|;|!|//|^[ \t]*colou?r\b)[^\n]*", re.MULTILINE | re.IGNORECASE), rb""),
+    (re.compile(rb"\bend[ \t]+(loop|facet)\b", re.IGNORECASE), rb"end\1"),
+    (re.compile(rb"\bfacet(\s+)(?:normal(\s+))?(?=outer\b)", re.IGNORECASE), rb"facet normal 0 0 0\1\2"),
 )
+"""Habits of other programs, and the words for them on as many lines."""
 
 FACET: Final = "facet normal . . . outer loop vertex . . . vertex . . . vertex . . . endloop endfacet"
 MUST_BE: Final = f"a facet must be {FACET!r}, with numbers for the points"
@@ -231,19 +229,13 @@ def _corners(data: bytes, begin: int, end: int, place: str) -> Iterator[Floats]:
         if text.strip():
             corners = _corners_of_facets(text)
             if corners is None:
-                text = HABITS.sub(_as_others_write, text)
+                for habit, words in HABITS:
+                    text = habit.sub(words, text)
                 corners = _corners_of_facets(text)
             if corners is None:
                 _refuse(text, data.count(b"\n", 0, begin) + 1, place)
             yield corners
         begin = stop
-
-
-def _as_others_write(habit: re.Match[bytes]) -> bytes:
-    """The words for a habit of other programs, on as many lines."""
-    if habit["end"]:
-        return b"end" + habit["end"]
-    return b"facet normal 0 0 0 " + b"\n" * habit["normal"].count(b"\n") if habit["normal"] else b""
 
 
 def _corners_of_facets(text: bytes) -> Floats | None:

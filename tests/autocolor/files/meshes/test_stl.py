@@ -64,12 +64,6 @@ def test_a_cube_has_eight_nodes_however_it_is_written(path: Path, data: bytes) -
     assert report.repairs == ()
 
 
-def test_the_normals_of_a_cube_point_outward() -> None:
-    records = np.frombuffer(stl_bytes(OF_QUADS), TRIANGLE, 12, 84)
-    centers = records["corners"].mean(axis=1) - 0.5
-    assert np.array_equal(records["normal"], np.sign(np.where(np.abs(centers) > 0.4, centers, 0)))
-
-
 @pytest.mark.parametrize("size", [1e-30, 1.0, 1e29])
 def test_a_quad_is_cut_along_its_diagonal_and_normals_are_unit_vectors_or_zero(
     size: float, monkeypatch: pytest.MonkeyPatch
