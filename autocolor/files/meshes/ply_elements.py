@@ -164,8 +164,8 @@ def read_elements(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str,
     at, end, text = header.length, len(data), None
     if not header.order:
         # Empty lines stand for the header, so that line numbers are those of the file.
-        body = text_lines(data[at:], place, "an ascii PLY file")
-        text = NumberText(b"\n" * header.lines + body, place)
+        below = b"\n" * header.lines + data[at:]
+        text = NumberText(text_lines(below, place, "an ascii PLY file"), place)
         numbers = text.values(0, len(text)).data
         lines = np.append(text.lines(), len(text))
         at, end = 0, len(lines) - 1
