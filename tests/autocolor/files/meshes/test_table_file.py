@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -46,13 +45,6 @@ def test_an_empty_mesh_odd_names_and_scalars_are_kept(tmp_path: Path) -> None:
     for one, other in zip(again, mesh.scalars, strict=True):
         assert (one.name, one.of) == (other.name, other.of)
         assert np.array_equal(one.values, other.values, equal_nan=True)
-
-
-def test_a_table_file_without_scalars_is_still_read(tmp_path: Path) -> None:
-    older = dataclasses.replace(TABLE_FILE, formats=TABLE_FILE.formats[1:])
-    again = read(tmp_path, array_file_bytes(older, cube(), {"part_names": ["cube"]}, {}))
-    assert np.array_equal(again.coordinates, cube().coordinates)
-    assert again.scalars == ()
 
 
 IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of, with values"

@@ -228,9 +228,7 @@ def test_a_file_without_nodes_of_later_tables_or_that_is_not_there_is_refused(tm
     with pytest.raises(InputError, match="must have the tables nodes and polygons; add nodes and polygons"):
         read_store(empty)
     run(empty, "PRAGMA user_version = 2")
-    with pytest.raises(
-        InputError, match="version of a store must be at most 1, not 2; use a newer"
-    ):
+    with pytest.raises(InputError, match="version of a store must be at most 1, not 2; use a newer"):
         read_store(empty)
 
 
