@@ -5,13 +5,12 @@ A format is recognized by the name of the file or folder that is written, or cho
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from autocolor.checks import shown
+from autocolor.checks import closest, shown
 from autocolor.errors import UsageError
 from autocolor.files.formats import (
     NORMALS,
@@ -22,14 +21,11 @@ from autocolor.files.formats import (
     SURFACES,
     Format,
     format_named,
-    format_of_folder,
     suffix_rule,
     suffixes_of,
 )
 from autocolor.files.meshes.obj_writing import beyond_materials
-from autocolor.files.opening import FORMATS, SCENE
-from autocolor.files.paths import SCENE_FILE
-from autocolor.scene.columns import fields_of
+from autocolor.files.opening import FORMATS, SCENE, format_of_folder
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.scalar import NODE
 from autocolor.scene.scene import Scene
@@ -42,47 +38,35 @@ OUTPUTS: Final = tuple(
 
 def output_named(name: str) -> Format:
     """The format with this name, in any capitals. Raises UsageError if no format has it."""
-    formats = {output.name.casefold(): output for output in OUTPUTS}
-    if name.casefold() in formats:
-        return formats[name.casefold()]
-    near = difflib.get_close_matches(name.casefold(), formats, 1)
-    *names, last = [output.name for output in OUTPUTS]
+    formats = {output.name: output for output in OUTPUTS}
+    for known, output in formats.items():
+        if name.casefold() == known.casefold():
+            return output
+    *names, last = formats
     raise UsageError(
-        f"--to must be {', '.join(names)} or {last}, not {name!r}"
-        + (f"; did you mean {formats[near[0]].name}?" if near else "; choose one")
+        f"--to must be {', '.join(names)} or {last}, not {name!r}{closest(name, formats) or '; choose one'}"
     )
 
 
 def output_of(path: Path) -> Format:
     """The format for a path that is written.
 
-    An existing folder keeps its format; an empty folder gets a scene. The name of a file decides if it is the
-    name of a file in a mesh folder, such as nodes.csv; otherwise the suffix decides. A path without a suffix
-    becomes the folder of a scene. Raises UsageError for an unknown suffix.
+    An existing folder keeps its format; an empty folder gets a scene. For a file or a new folder the suffix
+    decides. A path without a suffix becomes the folder of a scene. Raises UsageError for an unknown suffix.
     """
     # Unlike `Path.is_dir`, it never raises for a name that is too long.
-    if os.path.isdir(path):
-        if (path / SCENE_FILE).exists():
-            return SCENE
-        mesh_format = format_of_folder(path)
-        if mesh_format is not None and mesh_format.write is not None:
-            return mesh_format
-        return format_named(path, [each for each in OUTPUTS if each.in_folder]) or SCENE
-    output = next((each for each in OUTPUTS if path.name in each.in_folder), None)
-    output = output or format_named(path, OUTPUTS)
-    if output is not None:
-        return output
-    if not path.suffix:
-        return SCENE
-    raise UsageError(
-        f"OUT must {suffix_rule(path, suffixes_of(OUTPUTS))}; name another, without an ending for the folder"
-        " of a scene, or choose a format with --to"
-    )
+    is_folder = os.path.isdir(path)
+    output = format_of_folder(path) if is_folder else format_named(path, OUTPUTS)
+    if output is None and path.suffix and not is_folder:
+        raise UsageError(
+            f"OUT must {suffix_rule(path, suffixes_of(OUTPUTS))}; name another, without an ending for the"
+            " folder of a scene, or choose a format with --to"
+        )
+    return output or SCENE
 
-
-# The parts of a scene that a format cannot hold.
 
 MOST_NAMED: Final = 5
+"""Limit: names that a phrase lists."""
 
 
 def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
@@ -90,7 +74,7 @@ def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
 
     If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
     """
-    mesh, surfaces, views = scene.mesh, scene.surfaces, len(scene.views)
+    mesh = scene.mesh
     quads = len(mesh.node_numbers) - mesh.triangle_count
     angle = "" if mesh.crease_angle == CREASE_ANGLE else f"the crease angle of {mesh.crease_angle:g} degrees"
     phrases = [
@@ -102,14 +86,11 @@ def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
         (SETTINGS, angle),
     ]
     if not is_bare:
-        has_materials = SURFACES in output.holds and SETTINGS not in output.holds
-        beyond = beyond_materials(surfaces) if has_materials else []
+        beyond = beyond_materials(scene.surfaces) if SURFACES in output.holds else []
         phrases += [
-            (SURFACES, _counted("surface", [each.name for each in surfaces])),
+            (SURFACES, _counted("surface", [each.name for each in scene.surfaces])),
             (SETTINGS, f"what a material does not have of {_counted('surface', beyond)}" if beyond else ""),
-            (SETTINGS, _counted("light", [each.name for each in scene.lights])),
-            (SETTINGS, f"the view and {_counted('named view', range(views))}" if views else "the view"),
-            (SETTINGS, _counted("setting", _settings(scene))),
+            (SETTINGS, "the lights, the views and the settings of the scene"),
         ]
     return [phrase for held, phrase in phrases if phrase and held not in output.holds]
 
@@ -121,14 +102,3 @@ def _counted(noun: str, names: Sequence[object]) -> str:
     more = f" and {count - MOST_NAMED:,} more" if count > MOST_NAMED else ""
     named = f" ({', '.join(listed)}{more})" if listed else ""
     return f"{count:,} {noun}{'s' if count > 1 else ''}{named}" if count else ""
-
-
-def _settings(scene: Scene) -> list[str]:
-    """The names of the fields of a scene, without its tables, that differ from their defaults."""
-    return [
-        name
-        for name, field in fields_of(Scene).items()
-        if name not in ("name", "view", "views", "lights", "parts", "surfaces")
-        and field.default is not None
-        and vars(scene)[name] != field.default()
-    ]
