@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from autocolor.checks import closest, shown
+from autocolor.checks import shown
 from autocolor.errors import UsageError
 from autocolor.files.formats import (
     NORMALS,
@@ -38,14 +38,11 @@ OUTPUTS: Final = tuple(
 
 def output_named(name: str) -> Format:
     """The format with this name, in any capitals. Raises UsageError if no format has it."""
-    formats = {output.name: output for output in OUTPUTS}
-    for known, output in formats.items():
-        if name.casefold() == known.casefold():
+    for output in OUTPUTS:
+        if name.casefold() == output.name.casefold():
             return output
-    *names, last = formats
-    raise UsageError(
-        f"--to must be {', '.join(names)} or {last}, not {name!r}{closest(name, formats) or '; choose one'}"
-    )
+    *names, last = [output.name for output in OUTPUTS]
+    raise UsageError(f"--to must be {', '.join(names)} or {last}, not {name!r}; choose one")
 
 
 def output_of(path: Path) -> Format:

@@ -132,12 +132,8 @@ def read_scene_with_report(
     surfaces: SurfaceSource = MATERIALS,
 ) -> SceneReport:
     """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
-    kinds: dict[str, tuple[Kind, object]] = {
-        "up": (OneOf(UPS), up),
-        "scale": (SCALES, scale),
-        "surfaces": (OneOf((MATERIALS, PARTS)), surfaces),
-    }
-    for name, (kind, value) in kinds.items():
+    kinds: tuple[Kind, ...] = (OneOf(UPS), SCALES, OneOf((MATERIALS, PARTS)))
+    for name, kind, value in zip(("up", "scale", "surfaces"), kinds, (up, scale, surfaces), strict=True):
         if kind.validated(value, (), []) is REFUSED:
             raise UsageError(f"{name} {kind.rule()}, not {shown(value)}; choose another")
     path = Path(path)

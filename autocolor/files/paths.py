@@ -33,8 +33,7 @@ def path_within(problems: list[str], folder: Path, name: str, *, outside: bool =
     if outside or (is_relative and ".." not in name.split("/") and is_within(folder, folder / name)):
         return folder / name
     problems.append(
-        f"must be the name of a file in the scene's folder, with / between folders, not {shown(name)};"
-        " copy the file there"
+        f"must be the name of a file in the scene's folder, not {shown(name)}; copy the file there"
     )
     return None
 

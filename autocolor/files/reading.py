@@ -111,7 +111,7 @@ def unreadable(path: Path, error: OSError) -> InputError:
 MOST_NESTED: Final = 100
 """Limit: lists and tables around a value in JSON; files of ours need eight."""
 
-JSON_TEXT: Final = re.compile(rb'"(?:[^"\\]+|\\.)*', re.DOTALL)
+JSON_TEXT: Final = re.compile(rb'"(?:[^"\\]+|\\.)*"?', re.DOTALL)
 
 
 def bounded_json(data: bytes, most_values: int) -> Any:

@@ -55,14 +55,14 @@ def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
             if whole := places.get(place._replace(path=place.path[:number])):
                 raise UsageError(f"{key}: {whole} is also set, as a whole; leave one out")
             fields = fields.setdefault(table, {})
-        fields[name] = _value_for(scene, field_of(place), key, settings[key])
+        fields[name] = _value_for(field_of(place), key, settings[key])
     # Set whole rows, which are fields of the scene, before their fields.
     for table, name in sorted(changes, key=lambda row: row[0] != ""):
         scene = EDITS[table](scene, *([name] if name else []), **changes[table, name])
     return scene
 
 
-def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> object:
+def _value_for(field: Field | None, key: str, value: object) -> object:
     """The value for a field. Raises UsageError if it unsets a field that must have a value."""
     text = value if isinstance(value, str) else None
     if field is None:
@@ -75,8 +75,10 @@ def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> ob
     if is_value and text is not None:
         parsed = value_of_text(text)
         if isinstance(kind, References) and not isinstance(parsed, list):
-            names = [row.name for row in vars(scene)[kind.table]]
-            return _names_of(parsed if isinstance(parsed, str) else text, names)
+            # A list of names needs no brackets and no quotes; a name with a comma needs quotes.
+            is_quoted = isinstance(parsed, str) and parsed != text
+            listed = [name.strip(" \"'") for name in text.strip("[] ").split(",")]
+            return [parsed] if is_quoted else list(filter(None, listed))
         # A name such as 2 needs no quotes.
         return text if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str) else parsed
     if is_value or field.is_optional:
@@ -86,18 +88,6 @@ def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> ob
     if default is None or kind.to_plain(key, default).get(key) not in (None, {}):
         raise UsageError(f"{key}: it {kind.rule()}, not none; only an optional field can be unset")
     return default
-
-
-def _names_of(text: str, existing: Sequence[str]) -> list[str]:
-    """The names in a text: the whole text if a row has this name, else the names between commas.
-
-    >>> _names_of("body", []), _names_of("[body, glass]", []), _names_of("a, b", ["a, b"])
-    (['body'], ['body', 'glass'], ['a, b'])
-    """
-    if text in existing:
-        return [text]
-    listed = text[1:-1] if text.startswith("[") and text.endswith("]") else text
-    return [name.strip().strip("\"'") for name in listed.split(",") if name.strip()]
 
 
 class SettingPlace(NamedTuple):

@@ -114,14 +114,19 @@ test_what_is_refused = refused(
         ),
         (
             'a\n"1',
-            "t.csv, row 2: it must be CSV (unexpected end of data), separated by commas; correct the row",
+            "t.csv, row 2: it must be CSV in UTF-8 (unexpected end of data), separated by commas; correct the"
+            " row, or save the table as UTF-8",
         ),
         (
             "sep=|\na|b\n",
             "t.csv, row 1: cells must be separated by commas, semicolons or tabs, not by '|'; save the table"
             " with one of these",
         ),
-        (b"a\n\xff\n", "t.csv, line 2: a table must be text in UTF-8; save it as UTF-8"),
+        (
+            b"a\n\xff\n",
+            "t.csv, row 2: it must be CSV in UTF-8 ('utf-8' codec can't decode byte 0xff in position 0:"
+            " invalid start byte), separated by commas; correct the row, or save the table as UTF-8",
+        ),
         ("a,b\n".encode("utf-16"), "t.csv: a table must be text in UTF-8, not UTF-16; save it as UTF-8"),
     ],
 )

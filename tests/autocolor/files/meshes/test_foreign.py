@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from autocolor.budget import MEMORY, allowing
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, UnavailableError
-from autocolor.files.formats import format_of, read_mesh
+from autocolor.files.formats import FILE_FORMATS, read_mesh, recognized
 from autocolor.files.meshes import foreign
 from autocolor.files.meshes.foreign import (
     ForeignFormat,
@@ -189,7 +189,7 @@ def test_a_missing_package_is_told_with_what_installs_it(
 )
 def test_files_of_vtk_and_gltf_are_known_by_how_they_begin(tmp_path: Path, head: bytes, name: str) -> None:
     (tmp_path / "a.model").write_bytes(head)
-    found = format_of(tmp_path / "a.model")
+    found = recognized(tmp_path / "a.model", FILE_FORMATS)
     assert found is not None
     assert found.name == name
 

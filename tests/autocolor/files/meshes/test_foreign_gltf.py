@@ -260,7 +260,7 @@ DRACO = "KHR_draco_mesh_compression"
         *(
             ("buffers", [{"uri": uri}], f"buffers 0: it must be {told}")
             for uri, told in (
-                ("http://x", "the name of a file, not the address 'http://x'; fetch it and name the file"),
+                ("http://x", "the name of a file in the scene's folder, not 'http://x'; copy the file there"),
                 ("%2e%2e/a", "the name of a file in the scene's folder, not '../a'; copy the file there"),
                 (7, "the name of a file, not ''; correct it"),
                 ("b%20c", "in its folder, where there is no file 'b c'; copy it there"),
