@@ -77,8 +77,8 @@ test_what_is_refused = refused(
     [
         (
             ("a.gpk", b"x"),
-            "a.gpk: a palette must end in .csv or .gpl, not in '.gpk'; did you mean '.gpl'?; save it as one of"
-            " these",
+            "a.gpk: a palette must end in .csv or .gpl, not in '.gpk'; did you mean '.gpl'?; save it as one"
+            " of these",
         ),
         (("a.gpl", b""), "a.gpl, line 1: it must be 'GIMP Palette', not ''; save it by GIMP"),
         (("a.gpl", HEAD), f"a.gpl: {COUNT} 0; add a color"),
