@@ -145,11 +145,9 @@ def read_scene_with_report(
         placement = Placement(up, float(scale), normals=FILE)
         report, scene_file = _bare_mesh(path, source, placement, surfaces), None
     else:
-        for name, is_given in (("up", up != "z"), ("scale", scale != 1)):
-            if is_given:
-                raise UsageError(
-                    f"{name} is for mesh files, not for {path}, which gives its own; leave it out"
-                )
+        if up != "z" or scale != 1:
+            name = "scale" if up == "z" else "up"
+            raise UsageError(f"{name} is for mesh files, not for {path}, which gives its own; leave it out")
         report, scene_file = source.read(path, outside=outside, surfaces=surfaces), path.resolve()
     if report.mesh_files:
         folder = path if path.is_dir() else path.parent

@@ -134,7 +134,6 @@ test_what_cannot_be_written_is_refused = refused(
             "a palette must have a name for each of its 1 colors, or no names, not 2; write '' for a color"
             " without a name",
         ),
-        (("a.gpl", 5), "the colors of a palette must be a sequence of colors, not 5; give a list"),
         *(
             (("a.gpl", ["red"], [name]), f"color 1 of a palette: a name {NAME} {name!r}; correct it")
             for name in (" a", "a\n", 1)

@@ -109,12 +109,10 @@ def test_names_of_other_places_are_refused_unless_files_outside_are_allowed(tmp_
     [
         ("C:\\car", "C__car"),
         ("line\nbreak\x00\x1f", "line_break__"),
-        ('*?"<>|: ~', "_______ ~"),
         (" купе é ", "купе é"),
-        ("a" * 101, "a" * 100),
         # A space at the cut goes, too.
         ("a" * 99 + " b", "a" * 99),
-        *((name, "scene") for name in ("", ".", "..", "/", "a/..", " ", ". .")),
+        *((name, "scene") for name in ("", "..", "a/..", ". .")),
     ],
 )
 def test_a_name_becomes_the_beginning_of_a_file_name(name: str, stem: str) -> None:
@@ -138,9 +136,7 @@ def test_any_name_becomes_a_file_in_the_folder_where_it_is_put(name: str) -> Non
         check_stem(stem)
 
 
-@pytest.mark.parametrize(
-    "name", ["", " ", ".hidden", "a/b", "/a", "a\\b", "C:a", "a\nb", "\u202ea", " a", "a ", "x" * 101]
-)
+@pytest.mark.parametrize("name", ["", ".hidden", "a/b", "\u202ea", "x" * 101])
 def test_a_name_that_cannot_be_the_stem_of_a_listed_file_is_refused(name: str) -> None:
     with pytest.raises(UsageError, match=r"^a file name must be 1 to 100 characters, .*; choose another$"):
         check_stem(name)
