@@ -39,9 +39,6 @@ MOST_VARIANTS: Final = 100_000
 LARGEST_TABLE: Final = 16 << 20
 """Limit: bytes of a table of variants."""
 
-MOST_JSON_VALUES: Final = 1_000_000
-"""Limit: values in a table in JSON."""
-
 TIMES: Final = Number(at_least=-1e9, at_most=1e9)
 """The times of variants, in any unit."""
 
@@ -399,7 +396,7 @@ def _csv_rows(data: bytes, file: str) -> Iterator[tuple[int, dict[str, object]]]
 def _json_rows(data: bytes, file: str) -> Iterator[tuple[int, object]]:
     """The rows of a JSON table, numbered from 1. Raises InputError."""
     try:
-        rows = bounded_json(text_lines(data, file, "a table of variants"), MOST_JSON_VALUES)
+        rows = bounded_json(text_lines(data, file, "a table of variants"), 10 * MOST_VARIANTS)
     except ValueError as error:
         raise InputError(f"{file}: a table must be valid JSON ({error}); correct it") from None
     if not isinstance(rows, list):

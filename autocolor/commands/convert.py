@@ -56,8 +56,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     """
     if out in ("", "-"):
         raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")
-    from autocolor.files.conversion import left_out, output_named, output_of
-    from autocolor.files.opening import source_format
+    from autocolor.files.opening import left_out, output_named, output_of, source_format
     from autocolor.files.writing import refuse_output
 
     path = Path(out)

@@ -1,14 +1,14 @@
 """Opening a path: what it is, the scene that it gives, and which files of a folder can be opened.
 
 A path is a folder, a scene file, a store, a mesh file or a picture file; FORMATS has all of their formats. To
-add a format of scenes, write its reader and a row of FORMATS below.
+add a format of scenes, write its reader and a row of FORMATS below. A scene is written in one of OUTPUTS.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -16,10 +16,15 @@ from typing import Final, NamedTuple
 from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError, reason_of
+from autocolor.files import formats
 from autocolor.files.formats import (
     FILE_FORMATS,
     MESH_FORMATS,
     NORMALS,
+    QUADS,
+    SCALARS,
+    SETTINGS,
+    SURFACES,
     WHOLE_SCENE,
     Format,
     format_named,
@@ -28,6 +33,7 @@ from autocolor.files.formats import (
     suffix_rule,
     suffixes_of,
 )
+from autocolor.files.meshes.obj_writing import beyond_materials
 from autocolor.files.meshes.repair import FILE, SCALES, UPS, Placement
 from autocolor.files.meshes.up_axis import seems_to_lie
 from autocolor.files.palette_file import GPL
@@ -42,8 +48,10 @@ from autocolor.files.store.store_file import read_store, write_store
 from autocolor.files.writing import table_exists
 from autocolor.scene.columns import REFUSED, Kind
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
+from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.kinds import OneOf
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import NODE
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
@@ -283,3 +291,76 @@ def stays_within(path: Path, folder: Path) -> bool:
     found = format_of_folder(path)
     names = () if found is None else found.in_folder
     return all(is_within(folder, file) for file in (path, *(path / name for name in names)))
+
+
+# Writing a scene in another format, which may not hold all of it.
+
+OUTPUTS: Final = tuple(
+    sorted((each for each in FORMATS if each.write is not None), key=lambda each: each.name.casefold())
+)
+"""The formats that a scene can be written in, sorted by name."""
+
+
+def output_named(name: str) -> Format:
+    """The format with this name, in any capitals. Raises UsageError if no format has it."""
+    for output in OUTPUTS:
+        if name.casefold() == output.name.casefold():
+            return output
+    *names, last = [output.name for output in OUTPUTS]
+    raise UsageError(f"--to must be {', '.join(names)} or {last}, not {name!r}; choose one")
+
+
+def output_of(path: Path) -> Format:
+    """The format for a path that is written.
+
+    An existing folder keeps its format; an empty folder gets a scene. For a file or a new folder the suffix
+    decides. A path without a suffix becomes the folder of a scene. Raises UsageError for an unknown suffix.
+    """
+    # Unlike `Path.is_dir`, it never raises for a name that is too long.
+    is_folder = os.path.isdir(path)
+    output = format_of_folder(path) if is_folder else format_named(path, OUTPUTS)
+    if output is None and path.suffix and not is_folder:
+        raise UsageError(
+            f"OUT must {suffix_rule(path, suffixes_of(OUTPUTS))}; name another, without an ending for the"
+            " folder of a scene, or choose a format with --to"
+        )
+    return output or SCENE
+
+
+MOST_NAMED: Final = 5
+"""Limit: names that a phrase lists."""
+
+
+def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
+    """A phrase for each part of a scene that a format cannot hold: "2 node scalars ('stress', 'u')".
+
+    If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
+    """
+    mesh = scene.mesh
+    quads = len(mesh.node_numbers) - mesh.triangle_count
+    angle = "" if mesh.crease_angle == CREASE_ANGLE else f"the crease angle of {mesh.crease_angle:g} degrees"
+    phrases = [
+        (formats.PARTS, _counted("part", mesh.part_names) if len(mesh.part_names) > 1 else ""),
+        (SCALARS, _counted("node scalar", [each.name for each in mesh.scalars if each.of == NODE])),
+        (SCALARS, _counted("polygon scalar", [each.name for each in mesh.scalars if each.of != NODE])),
+        (QUADS, f"{_counted('quad', range(quads))} (each is written as two triangles)" if quads else ""),
+        (NORMALS, "the file's own normals (they will be computed)" if mesh.own_normals is not None else ""),
+        (SETTINGS, angle),
+    ]
+    if not is_bare:
+        beyond = beyond_materials(scene.surfaces) if SURFACES in output.holds else []
+        phrases += [
+            (SURFACES, _counted("surface", [each.name for each in scene.surfaces])),
+            (SETTINGS, f"what a material does not have of {_counted('surface', beyond)}" if beyond else ""),
+            (SETTINGS, "the lights, the views and the settings of the scene"),
+        ]
+    return [phrase for held, phrase in phrases if phrase and held not in output.holds]
+
+
+def _counted(noun: str, names: Sequence[object]) -> str:
+    """The number of things, and the first of their names if they have any; empty if there are none."""
+    count = len(names)
+    listed = [shown(name) for name in names[:MOST_NAMED] if isinstance(name, str)]
+    more = f" and {count - MOST_NAMED:,} more" if count > MOST_NAMED else ""
+    named = f" ({', '.join(listed)}{more})" if listed else ""
+    return f"{count:,} {noun}{'s' if count > 1 else ''}{named}" if count else ""

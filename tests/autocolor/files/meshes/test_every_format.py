@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.conversion import OUTPUTS
 from autocolor.files.formats import FILE_FORMATS, MESH_FORMATS, Format, read_mesh, recognized
 from autocolor.files.meshes.repair import Placement
+from autocolor.files.opening import OUTPUTS
 from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 from tests.mutations import BY_HAND, Seed, written_seed
