@@ -14,7 +14,8 @@ from __future__ import annotations
 import csv
 import io
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -108,8 +109,8 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
     if path.suffix.lower() == GPL or data.startswith(GIMP.encode()):
         problems, place, rows = Problems("line"), path.name, _gpl_rows(data, path.name)
     elif path.suffix.lower() == CSV:
-        table = TextTable(data, path.name, "a palette")
-        problems, place, rows = Problems("row"), table.place, _csv_rows(table)
+        table = _color_table(data, path.name)
+        problems, place, rows = Problems("row"), table.place, [*_csv_rows(table)]
     else:
         rule = suffix_rule(path, SUFFIXES)
         raise InputError(f"{path.name or path}: a palette must {rule}; save it as one of these")
@@ -144,32 +145,30 @@ def _gpl_rows(data: bytes, place: str) -> list[tuple[int, Any, str]]:
     return rows
 
 
-def _csv_rows(table: TextTable) -> list[tuple[int, Any, str]]:
-    """The rows, colors and names of a table. Raises InputError."""
-    if not _are_columns(table.header):
+def _color_table(data: bytes, place: str) -> TextTable:
+    """The table of a .csv file. Raises InputError unless its header has the columns of a palette."""
+    table = TextTable(data, place, "a palette")
+    if sorted({name.lower() for name in table.header} - {"", "name"}) not in (sorted(COMPONENTS), ["color"]):
         columns = shown(", ".join(table.header), 60)
         raise table.wrong(
             f"the columns must be red, green, blue, or color, and perhaps name, not {columns}"
             f" ({table.understood}); name them so"
         )
-    rows = []
+    return table
+
+
+def _csv_rows(table: TextTable) -> Iterator[tuple[int, Any, str]]:
+    """The rows, colors and names of a table. Raises InputError."""
     for number, cells in table.records():
         values = {name.lower(): cell for name, cell in cells.items()}
         # pandas writes the whole numbers of a column with missing values with a point.
         texts = [values.get(name, "").removesuffix(".0") for name in COMPONENTS]
-        rows.append((number, values.get("color", _components(texts)), values.get("name", "")))
-    return rows
+        yield number, values.get("color", _components(texts)), values.get("name", "")
 
 
 def _components(texts: Iterable[str]) -> list[int | str]:
     """The components of a color; a text that is no whole number stays as it is."""
     return [int(text) if text.isascii() and text.isdigit() and len(text) < 4 else text for text in texts]
-
-
-def _are_columns(header: Sequence[str]) -> bool:
-    """Whether these are the names of the columns of a palette, with or without names."""
-    columns = sorted({name.lower() for name in header} - {"", "name"})
-    return columns in (["blue", "green", "red"], ["color"])
 
 
 def write_palette(
@@ -215,10 +214,8 @@ def check_palette_path(path: Path) -> None:
 
 def is_palette(path: Path) -> bool:
     """Whether a file seems to be a palette. Its ending decides; for .csv, its first row decides, too."""
-    if path.suffix.lower() != CSV:
-        return path.suffix.lower() == GPL
-    head = read_head(path)
-    try:
-        return _are_columns(TextTable(head[: head.rfind(b"\n") + 1] or head, path.name).header)
-    except InputError:
-        return False
+    if path.suffix.lower() == GPL:
+        return True
+    with suppress(InputError):
+        return path.suffix.lower() == CSV and bool(_color_table(read_head(path), path.name).header)
+    return False
