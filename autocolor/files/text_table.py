@@ -18,7 +18,8 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import Any, Final
 
 from autocolor.checks import shown
@@ -73,61 +74,79 @@ class TextTable:
         lines = map(bytes.decode, io.BytesIO(data))
         self._reader = csv.reader(lines, delimiter=self._separator, strict=True)
         self.row = 0
+        if told:
+            self._rows(1)
         self.header: list[str] = []
-        for _, cells in self.rows():
-            if not (told and self.row == 1):
-                self.header = [cell.strip() for cell in cells]
-                break
-        else:
-            raise InputError(f"{name}: {thing} must start with a row of column names, not be empty")
+        while not any(self.header):
+            rows = self._rows(1)
+            if not rows:
+                raise InputError(f"{name}: {thing} must start with a row of column names, not be empty")
+            self.header = [cell.strip() for cell in rows[0]]
         repeated = [name for name, count in Counter(self.header).items() if count > 1 and name]
         if repeated:
             rule = f"a column name must be unique, not repeated: {shown(repeated[0], 40)} ({self.understood})"
             raise self.wrong(f"{rule}; remove one")
 
-    def rows(self) -> Iterator[tuple[int, list[str]]]:
-        """The rows that were not read yet and are not empty: the number of each row, and its cells.
+    def blocks(self, most: int = 1000) -> Iterator[tuple[Sequence[int], list[list[str]]]]:
+        """The other rows that are not empty, up to `most` at a time: their numbers, and their cells.
 
-        After the header, a row has a cell for each column, with a decimal point instead of a decimal comma.
-        Raises InputError for a row with a cell beyond the columns, or in a column without a name.
+        A row has a cell for each column, with a decimal point instead of a decimal comma. Raises InputError
+        for a row with a cell beyond the columns, or in a column without a name.
         """
-        is_plain, width = self._separator == "," and all(self.header), len(self.header)
-        try:
-            for cells in self._reader:
-                self.row += 1
-                # Measured: without this test, a mesh takes half as long again.
-                if is_plain and len(cells) == width and any(cells):
-                    yield self.row, cells
-                elif any(map(str.strip, cells)):
-                    yield self.row, self._cells(cells) if width else cells
-        except (csv.Error, UnicodeDecodeError) as error:
-            self.row += 1
-            rule = f"it must be CSV in UTF-8 ({error}), {self.understood}"
-            raise self.wrong(f"{rule}; correct the row, or save the table as UTF-8") from None
+        is_plain = self._separator == "," and all(self.header)
+        while rows := self._rows(most):
+            numbers: Sequence[int] = range(self.row + 1 - len(rows), self.row + 1)
+            # Measured: without this test, a mesh takes half as long again.
+            if not (is_plain and {*map(len, rows)} == {len(self.header)} and all(map(any, rows))):
+                numbers = [
+                    row for row, cells in zip(numbers, rows, strict=True) if any(map(str.strip, cells))
+                ]
+                rows = [self._cells(row, rows[row - self.row - 1]) for row in numbers]
+            if rows:
+                yield numbers, rows
 
-    def _cells(self, cells: list[str]) -> list[str]:
-        """The cells of the row that was read, one for each column. Raises InputError."""
+    def _cells(self, row: int, cells: list[str]) -> list[str]:
+        """The cells of a row, one for each column. Raises InputError."""
         width = len(self.header)
         if any(map(str.strip, cells[width:])):
             rule = f"a row must have at most {width} cells, {self.understood}, not {len(cells)}"
-            raise self.wrong(f"{rule}; quote a value that contains a separator")
+            raise self.wrong(f"{rule}; quote a value that contains a separator", row)
         for column, (name, cell) in enumerate(zip(self.header, map(str.strip, cells), strict=False)):
             if cell and not name and (column or not ROW_NUMBER.fullmatch(cell)):
                 rule = f"column {column + 1} must have a name, as it has {shown(cell, 40)}"
-                raise self.wrong(f"{rule} ({self.understood}); write the name at its top")
+                raise self.wrong(f"{rule} ({self.understood}); write the name at its top", row)
         if self._separator != ",":
-            cells = [cell.replace(",", ".") if COMMA_NUMBER.fullmatch(cell) else cell for cell in cells]
+            cells = [
+                cell.replace(",", ".") if "," in cell and COMMA_NUMBER.fullmatch(cell) else cell
+                for cell in cells
+            ]
         return (cells + [""] * width)[:width]
 
     def records(self) -> Iterator[tuple[int, dict[str, str]]]:
-        """The rows as tables of their cells, without spaces around them, by the names of the columns."""
-        for number, cells in self.rows():
-            named = zip(self.header, map(str.strip, cells), strict=True)
-            yield number, {name: cell for name, cell in named if name}
+        """The rows of `blocks`: each row's number, and its cells by the names of the columns.
 
-    def wrong(self, sentence: str) -> InputError:
-        """The error for the last row that was read."""
-        return InputError(f"{self.place}, row {self.row}: {sentence}")
+        Cells have no spaces around them.
+        """
+        for numbers, rows in self.blocks():
+            for number, cells in zip(numbers, rows, strict=True):
+                named = zip(self.header, map(str.strip, cells), strict=True)
+                yield number, {name: cell for name, cell in named if name}
+
+    def wrong(self, sentence: str, row: int = 0) -> InputError:
+        """The error for a row; for the last row that was read if none is given."""
+        return InputError(f"{self.place}, row {row or self.row}: {sentence}")
+
+    def _rows(self, count: int) -> list[list[str]]:
+        """The cells of the next rows as they are written; fewer rows at the end. Raises InputError."""
+        rows: list[list[str]] = []
+        try:
+            rows.extend(islice(self._reader, count))
+        except (csv.Error, UnicodeDecodeError) as error:
+            self.row += len(rows) + 1
+            rule = f"it must be CSV in UTF-8 ({error}), {self.understood}"
+            raise self.wrong(f"{rule}; correct the row, or save the table as UTF-8") from None
+        self.row += len(rows)
+        return rows
 
 
 def value_of_text(text: str) -> Any:

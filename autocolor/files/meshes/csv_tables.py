@@ -24,7 +24,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -144,11 +143,9 @@ class Table:
         empty = np.empty(0, np.int64)
         numbers = [empty]
         columns: dict[str, list[AnyArray]] = {name: [] for name in text.header if name}
-        numbered = text.rows()
-        while block := list(islice(numbered, ROWS_AT_ONCE)):
-            rows, rows_of_cells = zip(*block, strict=True)
-            numbers.append(np.array(rows))
-            for name, cells in zip(text.header, zip(*rows_of_cells, strict=True), strict=True):
+        for rows, block in text.blocks(ROWS_AT_ONCE):
+            numbers.append(np.fromiter(rows, np.int64, len(rows)))
+            for name, cells in zip(text.header, zip(*block, strict=True), strict=True):
                 if name:
                     columns[name].append(self._converted(kinds.get(name, VALUES), cells, rows))
         self.problems.raise_any()
