@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 from autocolor.checks import shown
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.reading import text_problem, utf_8_text
+from autocolor.files.reading import text_problem
 from autocolor.scene.columns import Problem
 
 LARGEST_TEXT: Final = 1 << 20
@@ -49,7 +49,11 @@ def parsed_toml(data: bytes, place: str, what: str = "a scene file") -> dict[str
     """The parsed TOML text; `place` is the file's name in messages. Raises InputError with the line."""
     if problem := text_problem(data):
         raise InputError(f"{place}: {what} {problem}")
-    text = utf_8_text(data, place, what)
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{place}, line {line}: {what} must be text in UTF-8; save it as UTF-8") from None
     nested, parts = 0, 1
     for token in TOKEN.finditer(text):
         kind = token.lastgroup

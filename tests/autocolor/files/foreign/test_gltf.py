@@ -249,7 +249,7 @@ DRACO = "KHR_draco_mesh_compression"
         *(
             ("buffers", [{"uri": uri}], f"buffers 0: it must be {told}")
             for uri, told in (
-                ("http://x", "the name of a file, not the address 'http://x'; fetch it and name the file"),
+                ("http://x", "the name of a file in the scene's folder, not 'http://x'; copy the file there"),
                 ("b%20c", "in its folder, and is not there; copy it there"),
             )
         ),

@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.formats import format_of_folder
 from autocolor.files.meshes.csv_tables import (
     ROWS_AT_ONCE,
     read_csv_tables,
     write_csv_tables,
 )
 from autocolor.files.meshes.repair import MeshReport
+from autocolor.files.opening import format_of_folder
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.meshes.written import assert_equal, writable_meshes

@@ -9,9 +9,9 @@ import pytest
 
 from autocolor import Light, Mesh, Reflectance, View, read_scene, render, write_picture, write_scene
 from autocolor.batches.outputs import base_mark
-from autocolor.files.conversion import output_of
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import FILE, MeshReport, Placement, RawPolygons, repaired
+from autocolor.files.opening import output_of
 from autocolor.journal.places import checksum_of
 from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.mesh import has_same_tables
