@@ -26,7 +26,6 @@ from autocolor.arrays import Bytes
 from autocolor.checks import Color, printable, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.formats import suffix_rule
-from autocolor.files.meshes.number_text import Problems
 from autocolor.files.reading import read_bytes, read_head, text_lines
 from autocolor.files.text_table import TextTable
 from autocolor.files.writing import write_atomically
@@ -34,6 +33,9 @@ from autocolor.scene.kinds import ColorKind
 
 MOST_COLORS: Final = 4096
 """Limit: the colors of a palette. The largest lists of paints have some two thousand."""
+
+MOST_PROBLEMS: Final = 20
+"""Limit: problems reported for one palette."""
 
 LONGEST_NAME: Final = 100
 """Limit: letters of a name, which fit in two lines of a message."""
@@ -107,17 +109,20 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
     path = Path(path)
     data = read_bytes(path, LARGEST)
     if path.suffix.lower() == GPL or data.startswith(GIMP.encode()):
-        problems, place, rows = Problems("line"), path.name, _gpl_rows(data, path.name)
+        unit, place, rows = "line", path.name, _gpl_rows(data, path.name)
     elif path.suffix.lower() == CSV:
         table = _color_table(data, path.name)
-        problems, place, rows = Problems("row"), table.place, [*_csv_rows(table)]
+        unit, place, rows = "row", table.place, [*_csv_rows(table)]
     else:
         rule = suffix_rule(path, SUFFIXES)
         raise InputError(f"{path.name or path}: a palette must {rule}; save it as one of these")
-    for number, color, name in rows:
-        if problem := _problem_of(color, name):
-            problems.note(place, number, problem)
-    problems.raise_any()
+    problems = [
+        f"{place}, {unit} {number}: {problem}"
+        for number, color, name in rows
+        if (problem := _problem_of(color, name))
+    ]
+    if problems:
+        raise InputError(problems[:MOST_PROBLEMS])
     try:
         return Palette([color for _, color, _ in rows], [name for _, _, name in rows])
     except InputError as error:

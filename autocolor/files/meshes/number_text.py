@@ -1,4 +1,4 @@
-"""Numbers in the text of mesh files, and the problems of their lines.
+"""Numbers in the text of mesh files.
 
 `NumberText` is for formats of numbers separated by white space. It first finds where each number begins. Then
 any run of numbers can be converted, counts are compared with the file before memory is allocated, and a wrong
@@ -17,9 +17,6 @@ from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.reading import shown
-
-MOST_PROBLEMS: Final = 20
-"""Limit: problems reported for one mesh file; a file with more usually repeats the same one."""
 
 BLOCK: Final = 1 << 17
 """Words to convert at once; blocks of whole numbers are converted faster."""
@@ -61,28 +58,6 @@ def decimal(word: bytes) -> float:
         return float(parsed(word, 1)[0])
     except ValueError:
         return math.nan
-
-
-class Problems:
-    """Collects the problems of a file, up to MOST_PROBLEMS, in the order of its lines.
-
-    `unit` is what messages call a line: "line" or "row".
-    """
-
-    def __init__(self, unit: str) -> None:
-        self._unit = unit
-        self._sentences: list[tuple[int, str]] = []
-
-    def note(self, place: str, line: int, sentence: str) -> None:
-        """Add a problem; raise InputError once there are MOST_PROBLEMS."""
-        self._sentences.append((line, f"{place}, {self._unit} {line}: {sentence}"))
-        if len(self._sentences) >= MOST_PROBLEMS:
-            self.raise_any()
-
-    def raise_any(self) -> None:
-        """Raise InputError with the problems, if any."""
-        if self._sentences:
-            raise InputError(sentence for _, sentence in sorted(self._sentences, key=lambda each: each[0]))
 
 
 GROWTH: Final = 3

@@ -24,7 +24,7 @@ from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE, listed, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
-from autocolor.files.meshes.ply_elements import ElementRows, Lists, parsed_header, read_elements
+from autocolor.files.meshes.ply_elements import ElementRows, Lists, read_elements
 from autocolor.files.meshes.repair import (
     PLAIN,
     MeshReport,
@@ -97,9 +97,8 @@ def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
 def _read(path: Path) -> tuple[RawPolygons, list[str]]:
     """The polygons of a file, and messages about skipped data. Returning frees the bytes of the file."""
     data = read_whole(path, GROWTH)
-    header = parsed_header(data, path.name)
-    elements, skipped = read_elements(data, header, path.name)
-    named_parts, named = named_in(header.comments)
+    elements, comments, skipped = read_elements(data, path.name)
+    named_parts, named = named_in(comments)
     vertices, faces = (elements.get(name, NO_ROWS) for name in (VERTEX, FACE))
     if STRIPS in elements and not faces.length:
         raise InputError(f"{path.name}: elements {STRIPS!r} are not read; export it with faces")
@@ -177,7 +176,9 @@ def _corners(faces: ElementRows, nodes: int, place: str) -> tuple[Indices, Indic
             f" {_listed(faces)}; export it with polygons"
         )
     values, counts = lists
-    is_node = (values >= 0) & (values < nodes) & (np.floor(values) == values)
+    is_node = np.ones(1, np.bool_)
+    if values.dtype.kind == "f" or (len(values) and not 0 <= values.min() <= values.max() < nodes):
+        is_node = (values >= 0) & (values < nodes) & (np.floor(values) == values)
     if not is_node.all():
         corner = int(is_node.argmin())
         row = int(np.searchsorted(np.cumsum(counts), corner, side="right"))

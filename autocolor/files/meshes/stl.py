@@ -16,10 +16,10 @@ from typing import Final, NoReturn
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, Singles, chunks, cross, normalized, underflowing
+from autocolor.arrays import AnyArray, Floats, Indices, Singles, underflowing
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import COORDINATE, decimal, parsed
+from autocolor.files.meshes.number_text import decimal, parsed
 from autocolor.files.meshes.repair import (
     PLAIN,
     MeshReport,
@@ -31,6 +31,7 @@ from autocolor.files.meshes.repair import (
 )
 from autocolor.files.meshes.welding import welded
 from autocolor.files.reading import UTF_8_MARK, read_whole, shown, text_lines
+from autocolor.scene.geometry.normals import polygon_normals
 from autocolor.scene.mesh import Mesh
 
 GROWTH: Final = 6
@@ -114,46 +115,158 @@ def read_binary(data: bytes, place: str) -> tuple[Singles, list[str]]:
     return corners, [f"skipped bytes after the last triangle: {left:,}"] if left else []
 
 
-POLYGONS_AT_ONCE: Final = 1 << 16
-
 TRIANGLES_OF: Final = np.array([[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]], [[0, 1, 2], [0, 0, 0]]])
 """The corners of the triangles of a polygon, by the corner where its diagonal begins (see `Diagonals`)."""
 
 
+@underflowing
 def stl_bytes(mesh: Mesh) -> bytes:
     """The mesh as a binary STL file: its triangles, and two triangles for each quad.
 
     A quad is cut along its diagonal of `Mesh.diagonals`, which is the shorter one in most quads. Coordinates
     are rounded to float32. The normals are unit vectors by the right-hand rule, 0 for triangles without area.
     """
-    starts = mesh.diagonals.starts
-    pieces = [b""]
-    count = 0
-    for chunk in chunks(len(starts), POLYGONS_AT_ONCE):
-        at = TRIANGLES_OF[starts[chunk]].reshape(-1, 6)
-        triangles = np.take_along_axis(mesh.node_numbers[chunk], at, axis=1).reshape(-1, 3)
-        # Leave out triangles that repeat a corner.
-        triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-        pieces.append(_records(mesh.coordinates[triangles]).tobytes())
-        count += len(triangles)
+    at = TRIANGLES_OF[mesh.diagonals.starts].reshape(-1, 6)
+    triangles = np.take_along_axis(mesh.node_numbers, at, axis=1).reshape(-1, 3)
+    # Leave out triangles that repeat a corner.
+    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+    records = np.zeros(len(triangles), TRIANGLE)
+    records["corners"] = mesh.coordinates[triangles]
+    # The normals fit the corners in the file, so that a file that is read is written again the same.
+    records["normal"] = polygon_normals(records["corners"][:, [0, 1, 2, 2]].T.astype(np.float64)).T
     # The text must not begin with the word `solid`.
-    pieces[0] = b"binary STL, written by autocolor".ljust(BEFORE_TRIANGLES - 4) + count.to_bytes(4, "little")
-    return b"".join(pieces)
+    begin = b"binary STL, written by autocolor".ljust(BEFORE_TRIANGLES - 4)
+    return begin + len(records).to_bytes(4, "little") + records.tobytes()
+
+
+# In text, solids are parts:
+#
+#     solid hood
+#       facet normal 0 0 1
+#         outer loop
+#           vertex 0 0 0
+#           vertex 1 0 0
+#           vertex 0 1 0
+#         endloop
+#       endfacet
+#     endsolid hood
+#
+# Words may be in capitals, and lines broken anywhere but in the names of solids. Other programs write `end
+# loop`, a `facet` without its normal, lines of colors and comments, numbers with the exponent D, or no
+# `endsolid`. Facets outside of solids are a part named after the file. Habits are brought to the form above,
+# and lines keep their numbers.
+
+BLOCK: Final = 1 << 21
+"""Bytes converted at a time."""
+
+SOLID: Final = re.compile(rb"^[ \t]*(end[ \t]*)?solid\b([^\n]*)$", re.MULTILINE | re.IGNORECASE)
+ENDFACET: Final = re.compile(rb"end[ \t]*facet\s", re.IGNORECASE)
+
+HABITS: Final = (
+    (re.compile(rb"(?:#|;|!|//|^[ \t]*colou?r\b)[^\n]*", re.MULTILINE | re.IGNORECASE), rb""),
+    (re.compile(rb"\bend[ \t]+(loop|facet)\b", re.IGNORECASE), rb"end\1"),
+    (re.compile(rb"\bfacet(\s+)(?:normal(\s+))?(?=outer\b)", re.IGNORECASE), rb"facet normal 0 0 0\1\2"),
+)
+"""Habits of other programs, and the words for them on as many lines."""
+
+FACET: Final = "facet normal . . . outer loop vertex . . . vertex . . . vertex . . . endloop endfacet"
+WORDS: Final = re.compile(rb"[\r\n]\s*facet\s+(?:normal|outer)\s", re.IGNORECASE)
+
+
+def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
+    """The mesh of an STL file, and what was repaired or skipped.
+
+    Raises InputError, with the place of each problem, and MissingInputError if the file does not exist.
+    """
+    corners, part_numbers, names, skipped = _triangles(path)
+    points, rows = welded(corners)
+    del corners
+    polygons = RawPolygons(
+        points.astype(np.float64, copy=False),
+        rows,
+        np.full(len(rows) // 3, 3, np.intp),
+        part_numbers,
+        names,
+    )
+    del points, rows
+    return repaired(polygons, path.name, placement, skipped=tuple(skipped))
+
+
+def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], list[str]]:
+    """The corners of the triangles, (corners, 3), their part numbers, the names of parts, and messages."""
+    data = read_whole(path, GROWTH)
+    is_text = BEGINNING.match(data) is not None and b"\0" not in data[:BEFORE_TRIANGLES]
+    if (is_text or data[:2] in (b"\xff\xfe", b"\xfe\xff")) and len(data) != _binary_size(data):
+        return read_text(text_lines(data, path.name, "an ascii STL file"), path.name, path.stem)
+    corners, messages = read_binary(data, path.name)
+    return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), messages
+
+
+def begins_as_stl(head: bytes) -> bool:
+    """Whether a file begins with a solid in text. Binary files are recognized by their suffix alone."""
+    return BEGINNING.match(head.removeprefix(UTF_8_MARK)) is not None and FACET_WORDS.search(head) is not None
+
+
+# A binary file has 80 bytes of any text, the count of triangles, and 50 bytes for each triangle.
+
+BEFORE_TRIANGLES: Final = 84
+TRIANGLE: Final = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def _binary_size(data: bytes) -> int:
+    """The size of a binary file with the count of triangles that is in the data."""
+    count = int.from_bytes(data[BEFORE_TRIANGLES - 4 : BEFORE_TRIANGLES], "little")
+    return BEFORE_TRIANGLES + TRIANGLE.itemsize * count
+
+
+def read_binary(data: bytes, place: str) -> tuple[Singles, list[str]]:
+    """The corners of the triangles, (corners, 3), and messages about what was skipped.
+
+    `place` is the file's name in messages. Raises InputError if the file is cut short, or about a triangle
+    with a coordinate that is no finite number of at most 1e30 in size.
+    """
+    size = _binary_size(data)
+    count = (size - BEFORE_TRIANGLES) // TRIANGLE.itemsize
+    if size > len(data):
+        raise InputError(
+            f"{place}: a binary STL file of {count:,} triangles must have {size:,} bytes, not {len(data):,};"
+            " it is cut short or of another format, export it again"
+        )
+    corners = np.array(np.frombuffer(data, TRIANGLE, count, BEFORE_TRIANGLES)["corners"]).reshape(-1, 3)
+    # A comparison with NaN is false. The bound is rounded to float32 as the coordinates are.
+    is_right = np.abs(corners) <= np.float32(LARGEST_COORDINATE)
+    if not is_right.all():
+        row, axis = np.argwhere(~is_right)[0].tolist()
+        raise InputError(
+            f"{place}, facet {row // 3 + 1}: a coordinate must be a finite number of at most 1e30 in size,"
+            f" not {corners[row, axis]:g}; correct it"
+        )
+    left = len(data) - size
+    return corners, [f"skipped bytes after the last triangle: {left:,}"] if left else []
+
+
+TRIANGLES_OF: Final = np.array([[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]], [[0, 1, 2], [0, 0, 0]]])
+"""The corners of the triangles of a polygon, by the corner where its diagonal begins (see `Diagonals`)."""
 
 
 @underflowing
-def _records(corners: Floats) -> AnyArray:
-    """The records of triangles with these corners, (triangles, 3, 3)."""
-    records = np.zeros(len(corners), TRIANGLE)
-    records["corners"] = corners
+def stl_bytes(mesh: Mesh) -> bytes:
+    """The mesh as a binary STL file: its triangles, and two triangles for each quad.
+
+    A quad is cut along its diagonal of `Mesh.diagonals`, which is the shorter one in most quads. Coordinates
+    are rounded to float32. The normals are unit vectors by the right-hand rule, 0 for triangles without area.
+    """
+    at = TRIANGLES_OF[mesh.diagonals.starts].reshape(-1, 6)
+    triangles = np.take_along_axis(mesh.node_numbers, at, axis=1).reshape(-1, 3)
+    # Leave out triangles that repeat a corner.
+    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+    records = np.zeros(len(triangles), TRIANGLE)
+    records["corners"] = mesh.coordinates[triangles]
     # The normals fit the corners in the file, so that a file that is read is written again the same.
-    corners = records["corners"].astype(np.float64)
-    edges = np.moveaxis(corners[:, 1:] - corners[:, :1], 0, 2)
-    # Unit size keeps the products of very small edges from underflow.
-    sizes = np.abs(edges).max(axis=(0, 1), initial=0)
-    sizes[sizes == 0] = 1.0
-    records["normal"] = normalized(cross(*(edges / sizes))).T
-    return records
+    records["normal"] = polygon_normals(records["corners"][:, [0, 1, 2, 2]].T.astype(np.float64)).T
+    # The text must not begin with the word `solid`.
+    begin = b"binary STL, written by autocolor".ljust(BEFORE_TRIANGLES - 4)
+    return begin + len(records).to_bytes(4, "little") + records.tobytes()
 
 
 # In text, solids are parts:
@@ -252,15 +365,18 @@ def _corners_of_facets(text: bytes) -> Floats | None:
 
 def _refuse(text: bytes, line: int, place: str) -> NoReturn:
     """Raise InputError about the first word of facets, from a line on, that is wrong."""
-    at, rule = len(text.rstrip()), f"{MUST_BE}, and not end too soon; correct it"
-    for match, (number, wanted) in zip(re.finditer(rb"\S+", text), cycle(enumerate(WORDS))):
-        if number in COORDINATES and not abs(decimal(match[0])) <= LARGEST_COORDINATE:
-            rule = f"{COORDINATE}, not {shown(match[0])}; correct it"
-        elif wanted not in (b".", match[0].lower()):
-            rule = f"{MUST_BE} (here {wanted.decode()!r}), not {shown(match[0])}; correct it"
+    # The end is an empty word.
+    words = zip(re.finditer(rb"\S+|\Z", text.rstrip()), cycle(enumerate(WORDS)), strict=False)
+    for match, (number, wanted) in words:
+        word = match[0]
+        if number in COORDINATES and word:
+            is_right = abs(decimal(word)) <= LARGEST_COORDINATE
         else:
-            continue
-        at = match.start()
-        break
-    line += text.count(b"\n", 0, at)
-    raise InputError(f"{place}, line {line}: {rule}")
+            is_right = wanted == word.lower() or (wanted == b"." and word != b"")
+        if not is_right:
+            break
+    line += text.count(b"\n", 0, match.start())
+    raise InputError(
+        f"{place}, line {line}: a facet must be {FACET!r} (here {wanted.decode()!r}), with numbers of at most"
+        f" 1e30 in size for the points, not {shown(word) if word else 'end'}; correct it"
+    )

@@ -7,16 +7,11 @@ digits every time.
 
 from __future__ import annotations
 
-from typing import Final
+import random
 
 import numpy as np
 
 from autocolor.arrays import AnyArray, Indices
-
-FACTORS: Final = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
-"""Odd numbers that spread coordinates over the slots of a table."""
-
-ROUNDS: Final = 4
 
 
 def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
@@ -34,32 +29,26 @@ def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
     """
     points = corners + corners.dtype.type(0)
     columns = np.ascontiguousarray(points.T)
-    mixed = np.zeros(len(points), np.uint64)
-    for words, factor in zip(columns.view(f"u{points.itemsize}"), FACTORS, strict=True):
-        mixed += words
-        mixed ^= mixed >> np.uint64(32)
-        mixed *= np.uint64(factor)
     bits = max(len(points), 2).bit_length()
     first = np.arange(len(points))
     left = first.copy()
-    for turn in range(ROUNDS):
-        # Other bits of the coordinates choose the slots of the next table.
-        slots = (mixed[left] << np.uint64(12 * turn) >> np.uint64(64 - bits)).astype(np.intp)
+    while len(left):
+        # With factors by chance, nobody can choose points that share slots in every table.
+        mixed = np.zeros(len(left), np.uint64)
+        for words in columns.view(f"u{points.itemsize}"):
+            mixed += words
+            mixed ^= mixed >> np.uint64(32)
+            mixed *= np.uint64(random.getrandbits(64) | 1)
+        slots = (mixed >> np.uint64(64 - bits)).astype(np.intp)
         table = np.empty(1 << bits, np.intp)
         # The last corner that is written to a slot stays there.
-        table[slots[::-1]] = left[::-1]
+        table[slots[::-1]] = np.arange(len(left))[::-1]
         leaders = table[slots]
         same = np.ones(len(left), np.bool_)
         for column in columns:
-            same &= column.take(leaders) == column.take(left)
-        first[left[same]] = leaders[same]
-        left = left[~same]
-        if not len(left):
-            break
-    if len(left):
-        # Only points that someone chose to share slots in every table remain.
-        _, leaders, rows = np.unique(points[left], axis=0, return_index=True, return_inverse=True)
-        first[left] = left[leaders[rows.ravel()]]
+            same &= column.take(leaders) == column
+        first[left[same]] = left[leaders[same]]
+        left, columns = left[~same], np.ascontiguousarray(columns[:, ~same])
     is_first = first == np.arange(len(points))
     number = np.cumsum(is_first) - 1
     return points[is_first], number.take(first)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText, Problems
+from autocolor.files.meshes.number_text import NumberText
 from tests.autocolor.files.refusals import refusal
 
 
@@ -36,15 +36,6 @@ def test_values_may_be_missing_or_infinite() -> None:
 def test_numbers_read_back_equal(numbers: list[float]) -> None:
     text = NumberText(" ".join(map(repr, numbers)).encode(), "")
     assert text.values(0, len(numbers)).tolist() == numbers
-
-
-def test_the_first_twenty_problems_come_in_the_order_of_rows() -> None:
-    problems = Problems("row")
-    for row in range(19, 0, -1):
-        problems.note("a.csv", row, "wrong")
-    with pytest.raises(InputError) as caught:
-        problems.note("a.csv", 20, "wrong")
-    assert list(caught.value.problems) == [f"a.csv, row {row}: wrong" for row in range(1, 21)]
 
 
 def test_lines_begin_with_their_first_word() -> None:
