@@ -117,12 +117,6 @@ def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygon
     stream = io.BytesIO(data)
     while rows := (stream.read(BLOCK) + stream.readline()).splitlines():
         kinds = bytes([KINDS.get(row.partition(b" ")[0], OTHER) for row in rows])
-        parts = []
-        for kind, row in zip(kinds, rows, strict=True):
-            if kind == POLYGON:
-                parts.append(statements.part_number)
-            elif kind == OTHER:
-                statements.read(row)
         lines = Lines(rows, kinds, place, first_line)
         vectors, sizes = lines.vectors()
         # Three numbers after the coordinates are a color; a single one is a weight.
@@ -130,11 +124,18 @@ def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygon
         nodes.append(vectors)
         normals.append(lines.normals())
         chosen = lines.are(POLYGON)
+        # The part changes at other statements alone.
+        others = np.append(np.flatnonzero(lines.are(OTHER)), len(rows))
+        ends = np.append(0, np.cumsum(chosen))[others].tolist()
+        parts = np.zeros(ends[-1], np.int64)
+        for line, begin, end in zip(others.tolist(), [0, *ends], ends, strict=False):
+            if begin < end:
+                parts[begin:end] = statements.part_number
+            statements.read(b"".join(rows[line : line + 1]))
         nodes_before = node_count + np.cumsum(lines.are(NODE))[chosen]
         normals_before = normal_count + np.cumsum(lines.are(NORMAL))[chosen]
         line_of = first_line + np.flatnonzero(chosen)
-        numbers = np.array(parts, np.int64)
-        polygons.append([*lines.corners(), numbers, nodes_before, normals_before, line_of])
+        polygons.append([*lines.corners(), parts, nodes_before, normals_before, line_of])
         node_count += len(nodes[-1])
         normal_count += len(normals[-1])
         first_line += len(rows)

@@ -35,8 +35,8 @@ TYPES: Final = {
 
 FIRST_LINE: Final = re.compile(rb"ply[ \t]*(\r?\n|\r)")
 
-Properties = dict[str, str]
-"""The types of an element's properties by their names: two letters for a list, that of its count first."""
+Properties = dict[str, tuple[str, ...]]
+"""The types of an element's properties by their names: two for a list, that of its count first."""
 
 
 def begins_as_ply(head: bytes) -> bool:
@@ -92,14 +92,14 @@ def _header(data: bytes, place: str) -> tuple[str, dict[str, tuple[int, Properti
     return order, elements, comments, end.end()
 
 
-def _types(kinds: list[bytes]) -> str:
-    """The letters of the words before the name of a property, `TYPE` or `list COUNT TYPE`; or none."""
+def _types(kinds: list[bytes]) -> tuple[str, ...]:
+    """The types in the words before the name of a property, `TYPE` or `list COUNT TYPE`; or none."""
     match kinds:
         case [kind] if kind in TYPES:
-            return TYPES[kind]
+            return (TYPES[kind],)
         case [b"list", count, kind] if TYPES.get(count, "f") not in "fd" and kind in TYPES:
-            return TYPES[count] + TYPES[kind]
-    return ""
+            return TYPES[count], TYPES[kind]
+    return ()
 
 
 class Lists(NamedTuple):
@@ -146,7 +146,7 @@ def read_elements(data: bytes, place: str) -> tuple[dict[str, ElementRows], list
                 columns, at = _binary_columns(data, at, rows, properties, order)
             else:
                 bounds = lines[at : at + rows + 1]
-                doubles = {each: "d" * len(types) for each, types in properties.items()}
+                doubles = {each: ("d",) * len(types) for each, types in properties.items()}
                 columns = _columns(doubles, bounds * 8, numbers, "=")
                 at += rows
         except _WrongRowError as error:
