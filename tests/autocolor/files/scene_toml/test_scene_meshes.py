@@ -144,11 +144,11 @@ def test_the_files_that_a_scene_file_names_come_first_unless_they_hold_another_m
     for place, text, entry in (
         (folder, named.format("y").encode(), copy),
         (folder, named.format("z").encode(), source),
-        (folder, None, source),
-        (folder.parent, None, {**source, "file": "coupe/car.obj"}),
+        (folder, b"", source),
+        (folder.parent, b"", {**source, "file": "coupe/car.obj"}),
     ):
         found = meshes_there(place, mesh, text)
         assert found is not None
         assert found.entries == (entry,)
     (folder / "car.obj").unlink()
-    assert meshes_there(folder, mesh, None) is None
+    assert meshes_there(folder, mesh, b"") is None
