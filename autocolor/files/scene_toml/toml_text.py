@@ -227,8 +227,6 @@ class SceneProblems:
             where, depth = f"{table}[{key + 1}]{f' {name[:60]!r}' if isinstance(name, str) else ''}: ", 2
         elif table in ("surfaces", "parts") and len(path) > 1:
             where, depth = f"[{table}.{key[:60]}]: ", 2
-        elif table == "view" and len(path) > 1:
-            where, depth = "[view]: ", 1
         line = self._line(path)
         sentence = problem._replace(path=path[depth:]).sentence
         return line, f"{self.place}{f', line {line}' if line else ''}, {where}{sentence}"

@@ -127,7 +127,7 @@ KEY = "lights[1] 'key # = ]'"
     [
         ((), ","),
         (("view",), ", line 4, view"),
-        (("view", "eye"), ", line 5, [view]: eye"),
+        (("view", "eye"), ", line 5, view.eye"),
         (("surfaces", "my body", "blend"), ", line 10, [surfaces.my body]: blend"),
         (("lights", 0, "position"), f", line 13, {KEY}: position"),
         (("lights", 0, "flaps", "y", "on"), f", line 18, {KEY}: flaps.y.on"),
