@@ -110,19 +110,6 @@ def test_every_column_of_a_scene_is_read_back_also_over_another_one(
     assert same(read_scene(folder), second)
 
 
-def test_a_scene_with_scalars_is_written_without_loss_and_a_new_scalar_to_a_new_file(tmp_path: Path) -> None:
-    stress = MeshScalar("stress", np.array([np.nan, *range(7)]))
-    load = MeshScalar("load", np.linspace(-1, 1, 6), "polygon")
-    scene = scene_of(cube().with_scalars(stress, load), scalar={"name": "load", "limits": (-2, 2)})
-    for scalars in (scene.mesh.scalars, (MeshScalar("load", np.arange(6.0), "polygon"),)):
-        saved(tmp_path, scene.replace(mesh=scene.mesh.with_scalars(*scalars)))
-        again = read_scene(tmp_path)
-        assert again.scalar == scene.scalar
-        for given_scalar, scalar in zip(scalars, again.mesh.scalars, strict=True):
-            assert (scalar.name, scalar.of) == (given_scalar.name, given_scalar.of)
-            assert np.array_equal(scalar.values, given_scalar.values, equal_nan=True)
-
-
 def test_only_what_was_changed_is_changed_in_its_place(car: Path) -> None:
     assert saved(car, read_scene(car)) == HAND_WRITTEN
     scene = read_scene(car).with_surface("paint", object_color="#00ff00").with_light("sun", intensity=2.5)
@@ -255,9 +242,10 @@ def test_no_file_of_another_kind_is_replaced_and_no_name_is_too_odd_to_be_refuse
 def test_no_mesh_file_is_ever_overwritten(tmp_path: Path) -> None:
     (tmp_path / "mesh.obj").write_text(CAR)
     saved(tmp_path, scene_of(cube()))
-    saved(tmp_path, scene_of(cube(2.0)))
+    saved(tmp_path, scene_of(cube().with_scalars(MeshScalar("load", np.arange(8.0)))))
+    assert [scalar.name for scalar in read_scene(tmp_path).mesh.scalars] == ["load"]
     assert (tmp_path / "mesh.obj").read_text() == CAR
-    assert sorted(os.listdir(tmp_path)) == ["mesh-2.obj", "mesh-3.obj", "mesh.obj", "scene.toml"]
+    assert sorted(os.listdir(tmp_path)) == ["mesh-2.obj", "mesh.obj", "mesh.tables", "scene.toml"]
 
 
 @pytest.mark.parametrize("is_new", [True, False])

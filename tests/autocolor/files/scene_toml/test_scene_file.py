@@ -142,9 +142,7 @@ def test_a_number_may_be_any_integer(folder: Path) -> None:
     [
         ("", "materials", ["red", "red"]),
         ("", "parts", ["hood", "door"]),
-        ("[surfaces.red]\n", "parts", ["hood", "door"]),
         ('[parts.hood]\nsurface = "body"\n[surfaces.body]\n', "materials", ["body", "red"]),
-        ("[parts.hood]\nstage = true\n", "materials", ["red", "red"]),
         ('[surfaces.red]\nobject_color = "#102030"\n', "materials", ["red", "red"]),
     ],
 )
