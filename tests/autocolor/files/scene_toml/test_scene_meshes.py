@@ -121,7 +121,6 @@ def test_a_mesh_is_from_the_files_that_it_was_read_from(
     [
         (cube(), "mesh.obj"),
         (Mesh(np.eye(3), np.array([[0, 1, 2], [0, 1, 1]]), np.zeros(2, np.intp), ("a",)), "mesh.tables"),
-        (Mesh(np.eye(3), np.array([[0, 1, 2], [0, 2, 1]]), np.array([1, 0]), ("a", "b")), "mesh.tables"),
         (Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ()), "mesh.tables"),
     ],
 )
