@@ -238,6 +238,4 @@ def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshRe
         )
         report = dataclasses.replace(report, repairs=(message, *report.repairs))
     LOG.info("%r", report.mesh)
-    for repair in report.repairs:
-        LOG.info("%s", repair)
     return report

@@ -133,7 +133,7 @@ def test_files_are_missing_input_only_where_nothing_else_is_wrong() -> None:
     problems.note_file(("mesh", 0, "file"), missing)
     with pytest.raises(MissingInputError) as caught:
         problems.raise_any()
-    assert str(caught.value) == "scene.toml, line 8, mesh[1]: car.obj: there is no such file"
+    assert str(caught.value) == "scene.toml, line 8: car.obj: there is no such file"
     problems.note(("ambient",), "must be so")
     with pytest.raises(InputError) as other:
         problems.raise_any()
