@@ -51,10 +51,6 @@ SceneWriter = Callable[[Path, Scene, bool], list[Path]]
 
 It returns the files that it wrote. It raises OutputError or WriteError, and leaves no file half written."""
 
-FILE: Final = ("file",)
-TABLES: Final = ("nodes", "polygons")
-"""The keys of a `[[mesh]]` table that name a mesh in a single file, and one in a node and a polygon table."""
-
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Format:
@@ -75,7 +71,7 @@ class Format:
     name: str
     suffixes: tuple[str, ...]
     read: Callable[..., Any]
-    keys: tuple[str, ...] = FILE
+    keys: tuple[str, ...] = ("file",)
     begins: Callable[[bytes], object] | None = None
     in_folder: tuple[str, ...] = ()
     write: SceneWriter | None = None
@@ -102,10 +98,8 @@ def recognized(path: Path, formats: Sequence[Format]) -> Format | None:
     if named is not None and named.begins is None:
         return named
     head = read_head(path)
-    if not head:
-        return named
     # The format of the suffix comes before others that begin so, too.
-    fitting = [each for each in formats if each.begins is not None and each.begins(head)]
+    fitting = [each for each in formats if head and each.begins is not None and each.begins(head)]
     return named if named in fitting else next(iter(fitting), named)
 
 
@@ -153,7 +147,7 @@ MESH_FORMATS: Final = (
         name="CSV",
         suffixes=(".csv",),
         read=read_csv_tables,
-        keys=TABLES,
+        keys=("nodes", "polygons"),
         in_folder=CSV_FILES,
         write=_tables(write_csv_tables, CSV_FILES),
     ),
@@ -163,7 +157,7 @@ MESH_FORMATS: Final = (
         suffixes=(".npy",),
         begins=lambda head: head.startswith(MAGIC),
         read=read_npy_tables,
-        keys=TABLES,
+        keys=("nodes", "polygons"),
         in_folder=(NODES, POLYGONS),
         write=_tables(write_npy_tables, (NODES, POLYGONS)),
         holds=MESH_EXTRAS,
@@ -216,7 +210,7 @@ MESH_FORMATS: Final = (
 """All mesh formats. If several formats accept the first bytes of a file, the first format is used."""
 
 
-FILE_FORMATS: Final = tuple(each for each in MESH_FORMATS if each.keys == FILE)
+FILE_FORMATS: Final = tuple(each for each in MESH_FORMATS if len(each.keys) == 1)
 """The mesh formats that consist of a single file."""
 
 
@@ -244,6 +238,4 @@ def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshRe
         )
         report = dataclasses.replace(report, repairs=(message, *report.repairs))
     LOG.info("%r", report.mesh)
-    for repair in report.repairs:
-        LOG.info("%s", repair)
     return report

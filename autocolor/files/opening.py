@@ -51,7 +51,6 @@ from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.kinds import OneOf
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalar import NODE
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
@@ -271,16 +270,12 @@ def openables_of(folder: Path) -> list[Openable]:
 def kind_of(path: Path) -> str:
     """The kind of a path, as in `Openable`; empty if it cannot be opened, or does not exist."""
     # Unlike the methods of Path, these functions never raise for a name that is too long.
-    if os.path.isdir(path):
-        found = format_of_folder(path)
-    elif not os.path.isfile(path):
-        return ""
-    elif path.suffix.lower() == GPL:
+    is_folder, is_file = os.path.isdir(path), os.path.isfile(path)
+    if is_file and path.suffix.lower() == GPL:
         return "paints"
-    else:
-        found = format_named(path, FILES)
+    found = format_of_folder(path) if is_folder else format_named(path, FILES) if is_file else None
     if found is None:
-        return FOLDER if os.path.isdir(path) else ""
+        return FOLDER if is_folder else ""
     return MESH if found.keys else found.name
 
 
@@ -325,12 +320,8 @@ def output_of(path: Path) -> Format:
     return output or SCENE
 
 
-MOST_NAMED: Final = 5
-"""Limit: names that a phrase lists."""
-
-
 def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
-    """A phrase for each part of a scene that a format cannot hold: "2 node scalars ('stress', 'u')".
+    """A phrase for each part of a scene that a format cannot hold: "2 scalars ('stress, u')".
 
     If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
     """
@@ -339,9 +330,8 @@ def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
     angle = "" if mesh.crease_angle == CREASE_ANGLE else f"the crease angle of {mesh.crease_angle:g} degrees"
     phrases = [
         (formats.PARTS, _counted("part", mesh.part_names) if len(mesh.part_names) > 1 else ""),
-        (SCALARS, _counted("node scalar", [each.name for each in mesh.scalars if each.of == NODE])),
-        (SCALARS, _counted("polygon scalar", [each.name for each in mesh.scalars if each.of != NODE])),
-        (QUADS, f"{_counted('quad', range(quads))} (each is written as two triangles)" if quads else ""),
+        (SCALARS, _counted("scalar", [each.name for each in mesh.scalars])),
+        (QUADS, f"the quads ({quads:,}, each written as two triangles)" if quads else ""),
         (NORMALS, "the file's own normals (they will be computed)" if mesh.own_normals is not None else ""),
         (SETTINGS, angle),
     ]
@@ -355,10 +345,7 @@ def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
     return [phrase for held, phrase in phrases if phrase and held not in output.holds]
 
 
-def _counted(noun: str, names: Sequence[object]) -> str:
-    """The number of things, and the first of their names if they have any; empty if there are none."""
-    count = len(names)
-    listed = [shown(name) for name in names[:MOST_NAMED] if isinstance(name, str)]
-    more = f" and {count - MOST_NAMED:,} more" if count > MOST_NAMED else ""
-    named = f" ({', '.join(listed)}{more})" if listed else ""
-    return f"{count:,} {noun}{'s' if count > 1 else ''}{named}" if count else ""
+def _counted(noun: str, names: Sequence[str]) -> str:
+    """The number of things, and the first of their names; empty if there are none."""
+    plural = "s" if len(names) > 1 else ""
+    return f"{len(names):,} {noun}{plural} ({shown(', '.join(names))})" if names else ""

@@ -24,7 +24,7 @@ from autocolor.files.scene_toml.scene_meshes import (
     reports_of,
     written_mesh,
 )
-from autocolor.files.scene_toml.scene_text import edited_to, scene_text, tables_of
+from autocolor.files.scene_toml.scene_text import edited_to, tables_of, with_crease_angle
 from autocolor.files.scene_toml.toml_edit import edited_toml
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import write_store
@@ -71,7 +71,7 @@ def write_scene(
         try:
             refuse_output(target, overwrite=overwrite)
             check = guard(target)
-            old = None
+            old = b""
             with suppress(InputError):
                 # A file that is no valid TOML is written anew.
                 present = read_bytes(target, LARGEST_TEXT)
@@ -79,10 +79,16 @@ def write_scene(
                 old = present
             meshes = meshes_there(target.parent, scene.mesh, old)
             meshes = meshes or written_mesh(target.parent, scene.mesh, written)
-            data = None if old is None else _edited(old, target, scene, meshes, complete)
-            if data is None and old is not None:
+            is_same = not old or _is_of_same_object(old, target, scene, meshes)
+            data = _text(old, target, scene, meshes, complete) if is_same else None
+            if data is None and old:
                 LOG.warning("%s: written anew; its old content and comments are lost", target)
-            data = data or _fresh(target, scene, meshes, complete)
+                data = _text(b"", target, scene, meshes, complete)
+            if data is None:
+                raise OutputError(
+                    f"{target}: a scene file must have at most {LARGEST_TEXT:,} bytes and give the same"
+                    " scene, and this one would not; save the scene with its picture instead"
+                )
             check()
             write_atomically(target, data, overwrite=overwrite)
         except BaseException:
@@ -110,35 +116,22 @@ def _target(path: str | os.PathLike[str]) -> Path:
     return target if suffix == ".toml" else target / SCENE_FILE
 
 
-def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
-    """The old text, edited until it gives the scene; None if it has another object, or no edit succeeds."""
+def _is_of_same_object(old: bytes, target: Path, scene: Scene, meshes: Meshes) -> bool:
+    """Whether a scene's mesh was read by the old text of its scene file, or has a part of its meshes."""
+    source = SOURCES.get(scene.mesh)
+    if entries_of(old) == meshes.entries or (source and source.scene_file == target.resolve()):
+        return True
+    reports = reports_of(target.parent, entries_of(old))
+    return any(set(report.mesh.part_names) & set(scene.mesh.part_names) for report in reports)
+
+
+def _text(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
+    """The old text, which may be empty, edited until it gives the scene; None if no edit succeeds."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
-    source = SOURCES.get(mesh)
-    is_same = entries_of(old) == meshes.entries
-    if not is_same and (source is None or source.scene_file != target.resolve()):
-        reports = reports_of(target.parent, entries_of(old))
-        if not {name for report in reports for name in report.mesh.part_names} & set(mesh.part_names):
-            return None
     if isinstance(parts := document.get("parts"), dict):
         document["parts"] = {name: part for name, part in parts.items() if name in mesh.part_names}
-    tables = [dict(entry) for entry in meshes.entries]
-    if complete or mesh.crease_angle != meshes.reports[0].mesh.crease_angle:
-        # The angle stands in every table that has the key, else in the first.
-        for table in [table for table in tables if "crease_angle" in table] or tables[:1]:
-            table["crease_angle"] = mesh.crease_angle
-    wanted = {**document, **(tables_of(scene) if complete else {}), "mesh": tables}
-    data = edited_toml(old, wanted)
-    return None if data is None else edited_to(data, scene, target, meshes.reports)
-
-
-def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:
-    """A new text that gives the scene. Raises OutputError if the text would be too long, or give another."""
-    entries = [{key: entry[key] for key in entry if key != "crease_angle"} for entry in meshes.entries]
-    text = scene_text(scene, entries, without_defaults=not complete).encode()
-    data = edited_to(text, scene, target, meshes.reports)
-    if data is None:
-        raise OutputError(
-            f"{target}: a scene file must have at most {LARGEST_TEXT:,} bytes and give the same scene, and"
-            f" this one of {len(text):,} does not; save the scene with its picture instead"
-        )
-    return data
+    if complete or not old:
+        document |= tables_of(scene, sparse=not complete)
+    is_angle_written = complete or mesh.crease_angle != meshes.reports[0].mesh.crease_angle
+    entries = with_crease_angle(meshes.entries, mesh.crease_angle) if is_angle_written else meshes.entries
+    return edited_to(edited_toml(old, {**document, "mesh": entries}), scene, target, meshes.reports)

@@ -2,17 +2,17 @@
 
 The keys are the columns of the tables, which docs/COLUMNS.md lists; `[[mesh]]` names the mesh files.
 Everything but a mesh is optional and created with defaults when omitted; `lights = []` means no lights. Parts
-of the same name in several meshes become one part. All problems of the file are reported together; messages
-count the rows of `lights`, `views` and `mesh` from 1.
+of the same name in several meshes become one part. All problems of the values are reported together, and then
+those of names that the scene lacks; messages count the rows of `lights`, `views` and `mesh` from 1.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from autocolor.checks import nearest, shown
+from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.reading import read_bytes
@@ -23,7 +23,7 @@ from autocolor.scene.columns import Problem, RowError, SomeRow, keys_of, replace
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.defaults import default_surface
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import MOST_SURFACES, Part
+from autocolor.scene.surfaces import Part
 
 FILE_KEYS: Final = tuple(key for key in keys_of(Scene) if key != "name")
 """The keys of a scene file; the scene's name is that of its folder or file."""
@@ -57,9 +57,6 @@ def read_scene_file(
             fields[key] = keys_of(Scene)[key].column.kind.validated(value, (key,), refused)
             problems.note_all(refused)
     given = _rows(problems, document, "surfaces", default_surface)
-    if len(given) > MOST_SURFACES:
-        rule = f"must be at most {MOST_SURFACES}, not {len(given):,}; let parts share a surface"
-        problems.note(("surfaces",), rule)
     entries = document.get("mesh", [])
     if not isinstance(entries, list):
         problems.note(("mesh",), f"must be tables, each written [[mesh]], not {shown(entries)}")
@@ -68,15 +65,12 @@ def read_scene_file(
         problems.note((), 'there must be a [[mesh]] with file = "NAME.obj", not none; add one')
     reports = meshes_of(problems, entries, path.parent, outside=outside) if meshes is None else meshes
     part_rows = _rows(problems, document, "parts", lambda name, _: Part(name, name))
-    part_names = [name for report in reports for name in report.mesh.part_names]
-    if len(reports) == len(entries):
-        materials = {name for report in reports for name in report.material_of_part.values()}
-        _check_parts(problems, part_rows, part_names, (*given, *part_names, *materials))
     problems.raise_any()
     parts = {part: document["parts"][part] for part in part_rows}
     if surfaces != MATERIALS:
         # A part whose surface the file does not name has a surface of its own name.
-        parts = {part: {"surface": part, **parts.get(part, {})} for part in part_names}
+        names = [name for report in reports for name in report.mesh.part_names]
+        parts |= {name: {"surface": name, **parts.get(name, {})} for name in names}
 
     name = path.resolve().parent.name if path.name == "scene.toml" else path.stem
     try:
@@ -118,18 +112,3 @@ def _rows(
             except RowError as error:
                 problems.note_all(error.row_problems, (key, name))
     return rows
-
-
-def _check_parts(
-    problems: SceneProblems, parts: Mapping[str, Part], part_names: Collection[str], surfaces: Collection[str]
-) -> None:
-    """Note the parts of a file that no mesh has, and those whose surface the scene does not have."""
-    part_names, surfaces = set(part_names), set(surfaces)
-    for name, part in parts.items():
-        if problems.full:
-            break
-        if name not in part_names:
-            problems.note(("parts", name), f"no mesh has a part of this name{nearest(name, part_names)}")
-        if part.surface not in surfaces and part.surface != name:
-            rule = f"must be a surface, a part or a material of the scene, not {shown(part.surface)}"
-            problems.note(("parts", name, "surface"), f"{rule}{nearest(part.surface, surfaces)}")

@@ -136,18 +136,16 @@ class Meshes(NamedTuple):
     reports: list[MeshReport]
 
 
-def meshes_there(folder: Path, mesh: Mesh, old: bytes | None) -> Meshes | None:
+def meshes_there(folder: Path, mesh: Mesh, old: bytes) -> Meshes | None:
     """The files in a folder that hold a mesh; None if no files do.
 
     Candidates are the files that the old scene file names, and the files that the mesh was read from.
     """
-    candidates = [] if old is None else [entries_of(old)]
+    candidates = [entries_of(old)]
     if source := SOURCES.get(mesh):
         # On Windows, a file may be on another drive.
         with suppress(ValueError):
-            candidates.append(
-                tuple(_from(folder.resolve(), source.folder, entry) for entry in source.entries)
-            )
+            candidates.append(tuple(_from(folder.resolve(), source, entry) for entry in source.entries))
     for entries in candidates:
         reports = reports_of(folder, entries)
         if reports and has_same_tables(Mesh.joined([report.mesh for report in reports]), mesh):
@@ -155,9 +153,11 @@ def meshes_there(folder: Path, mesh: Mesh, old: bytes | None) -> Meshes | None:
     return None
 
 
-def _from(folder: Path, source: Path, entry: Mapping[str, Any]) -> dict[str, Any]:
-    """A table of a source's folder, with the paths of its files from another folder."""
-    paths = {key: os.path.relpath(source / entry[key], folder) for key in MESH_FILE_KEYS if key in entry}
+def _from(folder: Path, source: MeshSource, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """A table of a source, with the paths of its files from another folder."""
+    paths = {
+        key: os.path.relpath(source.folder / entry[key], folder) for key in MESH_FILE_KEYS if key in entry
+    }
     return {**entry, **{key: Path(path).as_posix() for key, path in paths.items()}}
 
 

@@ -18,7 +18,6 @@ from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.toml_edit import FILE_TABLES, ORDERED, edited_toml, item_numbers
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.scene.columns import Row, difference, fields_of, from_plain, to_plain, with_values
-from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.row_kinds import RowList, without_name
 from autocolor.scene.scene import Scene
 
@@ -29,21 +28,18 @@ ALWAYS_WRITTEN: Final = ("eye", "direction", "target", "object_color")
 """Keys that are always written: a view needs them, and surfaces without a color are given different ones."""
 
 
-def scene_text(
-    scene: Scene, mesh_files: Sequence[Mapping[str, str]], *, without_defaults: bool = False
-) -> str:
-    """The scene as TOML, with all its tables; `mesh_files` are its `[[mesh]]` tables (see SceneReport).
+def scene_text(scene: Scene, mesh_files: Sequence[Mapping[str, Any]]) -> str:
+    """The scene as TOML, with all keys but its name; `mesh_files` are its `[[mesh]]` tables."""
+    entries = with_crease_angle(mesh_files, scene.mesh.crease_angle)
+    return (edited_toml(b"", {**tables_of(scene), "mesh": entries}) or b"").decode()
 
-    Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
-    the name of the folder or file.
-    """
-    tables = tables_of(scene, sparse=without_defaults)
-    entries: list[dict[str, Any]] = [dict(files) for files in mesh_files]
-    if entries and not (without_defaults and scene.mesh.crease_angle == CREASE_ANGLE):
-        entries[0]["crease_angle"] = scene.mesh.crease_angle
-    if entries:
-        tables["mesh"] = entries
-    return (edited_toml(b"", tables) or b"").decode()
+
+def with_crease_angle(entries: Sequence[Mapping[str, Any]], angle: float) -> list[dict[str, Any]]:
+    """`[[mesh]]` tables with a crease angle: in each table that has the key, else in the first table."""
+    tables = [dict(entry) for entry in entries]
+    for table in [table for table in tables if "crease_angle" in table] or tables[:1]:
+        table["crease_angle"] = angle
+    return tables
 
 
 def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
@@ -94,25 +90,24 @@ MOST_ROUNDS: Final = 6
 Tables = Mapping[str, Any]
 
 
-def edited_to(data: bytes, scene: Scene, path: Path, reports: list[MeshReport]) -> bytes | None:
+def edited_to(data: bytes | None, scene: Scene, path: Path, reports: list[MeshReport]) -> bytes | None:
     """The text of a scene file, edited until it gives the scene; its mesh and its name may differ.
 
-    `reports` are the meshes that the text names. None if the text cannot be read, or is too long, or if no
-    edit makes it give the scene.
+    `reports` are the meshes that the text names. None if there is no text, or if it cannot be read, or is too
+    long, or if no edit makes it give the scene.
     """
-    edited: bytes | None = data
     for _ in range(MOST_ROUNDS):
-        if edited is None or len(edited) > LARGEST_TEXT:
+        if data is None or len(data) > LARGEST_TEXT:
             return None
         try:
-            current = read_scene_file(path, data=edited, meshes=reports).scene
+            current = read_scene_file(path, data=data, meshes=reports).scene
         except InputError:
             return None
         if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
-            return edited
-        document = parsed_toml(edited, path.name)
+            return data
+        document = parsed_toml(data, path.name)
         wanted = _changed(document, tables_of(current), tables_of(scene), tables_of(scene, sparse=True))
-        edited = edited_toml(edited, wanted)
+        data = edited_toml(data, wanted)
     return None
 
 

@@ -312,19 +312,16 @@ def _set(container: Any, key: str | int, old: Any, new: Any) -> None:
 
 def _set_items(array: Any, old: list[Any], new: list[Any]) -> None:
     """Change the items of an array of tomlkit from old to new values."""
-    numbers = item_numbers(old, new)
-    stay = set(numbers)
-    left: list[int | None] = [number for number in range(len(old)) if number in stay]
-    for place in reversed(range(len(old))):
-        if place not in stay:
-            del array[place]
-    for place, number in enumerate(numbers):
-        if number is None:
-            array.insert(place, tomlkit.value(toml_value(new[place])))
-            left.insert(place, None)
+    stay: dict[int, int] = {}
+    last = -1
+    for place, number in enumerate(item_numbers(old, new)):
+        # An item that moves before another one is written anew.
+        if number is not None and number > last:
+            stay[place] = last = number
+    for number in sorted({*range(len(old))} - {*stay.values()}, reverse=True):
+        del array[number]
+    for place, item in enumerate(new):
+        if place in stay:
+            _set(array, place, old[stay[place]], item)
         else:
-            if left[place] != number:
-                at = left.index(number)
-                array.insert(place, array.pop(at))
-                left.insert(place, left.pop(at))
-            _set(array, place, old[number], new[place])
+            array.insert(place, tomlkit.value(toml_value(item)))

@@ -194,19 +194,18 @@ class SceneProblems:
         """Add a problem of the value at a path."""
         self.note_all([Problem(path, text)])
 
-    def note_all(self, problems: Iterable[Problem], path: KeyPath = (), *, is_missing: bool = False) -> None:
-        """Add problems of the table at a path; `is_missing` tells that they are only missing files."""
-        self.messages += [(*self._message(problem.under(path)), is_missing) for problem in problems]
+    def note_all(self, problems: Iterable[Problem], path: KeyPath = ()) -> None:
+        """Add problems of the table at a path."""
+        self.messages += [(*self._message(problem.under(path)), False) for problem in problems]
         del self.messages[MOST_PROBLEMS:]
 
     def note_file(self, path: KeyPath, error: InputError) -> None:
         """Add the problems of a mesh file; their messages name the file. `path` is the key that names it."""
-        if isinstance(error, MissingInputError):
-            missing = [Problem(path, sentence, names_key=True) for sentence in error.problems]
-            self.note_all(missing, is_missing=True)
-        else:
-            self.messages += [(self._line(path), sentence, False) for sentence in error.problems]
-            del self.messages[MOST_PROBLEMS:]
+        is_missing = isinstance(error, MissingInputError)
+        line = self._line(path)
+        start = f"{self.place}, line {line}: " if is_missing else ""
+        self.messages += [(line, f"{start}{sentence}", is_missing) for sentence in error.problems]
+        del self.messages[MOST_PROBLEMS:]
 
     def raise_any(self) -> None:
         """Raise InputError with all problems, if any; MissingInputError if only files are missing."""
@@ -227,8 +226,6 @@ class SceneProblems:
             where, depth = f"{table}[{key + 1}]{f' {name[:60]!r}' if isinstance(name, str) else ''}: ", 2
         elif table in ("surfaces", "parts") and len(path) > 1:
             where, depth = f"[{table}.{key[:60]}]: ", 2
-        elif table == "view" and len(path) > 1:
-            where, depth = "[view]: ", 1
         line = self._line(path)
         sentence = problem._replace(path=path[depth:]).sentence
         return line, f"{self.place}{f', line {line}' if line else ''}, {where}{sentence}"

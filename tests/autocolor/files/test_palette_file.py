@@ -84,11 +84,10 @@ test_what_is_refused = refused(
         (("a.gpl", HEAD), f"a.gpl: {COUNT} 0; add a color"),
         (("a.gpl", HEAD + b"1 2 3\n" * 4097), f"a.gpl: {COUNT} 4,097; choose some of them"),
         (
-            ("a.gpl", HEAD + b"1 2 256 a\n0 0\n-1 0 0\n" + "٣ 2 1\n".encode()),
+            ("a.gpl", HEAD + b"1 2 256 a\n-1 0 0\n" + "٣ 2 1\n".encode()),
             f"a.gpl, line 2: a color {A_COLOR} [1, 2, 256]; correct it\n"
-            f"a.gpl, line 3: a color {A_COLOR} [0, 0]; correct it\n"
-            f"a.gpl, line 4: a color {A_COLOR} ['-1', 0, 0]; correct it\n"
-            f"a.gpl, line 5: a color {A_COLOR} ['٣', 2, 1]; correct it",
+            f"a.gpl, line 3: a color {A_COLOR} ['-1', 0, 0]; correct it\n"
+            f"a.gpl, line 4: a color {A_COLOR} ['٣', 2, 1]; correct it",
         ),
         (
             ("a.gpl", HEAD + b"Channels: RGBA\n1 2 3 sea\n"),
@@ -105,10 +104,6 @@ test_what_is_refused = refused(
             f"a.csv, row 2: a color {A_COLOR} 'rde'; did you mean 'red'?\n"
             f"a.csv, row 3: a name {NAME} '{'x' * 40}'...; correct it",
         ),
-        (
-            ("a.csv", b"red,green,blue\n1,+2,1e1\n"),
-            f"a.csv, row 2: a color {A_COLOR} [1, '+2', '1e1']; correct it",
-        ),
     ],
 )
 
@@ -119,9 +114,6 @@ def test_a_palette_file_is_not_overwritten_unasked(tmp_path: Path) -> None:
     write_palette(tmp_path / "a.gpl", ["red"])
     with pytest.raises(OutputError, match="exists"):
         write_palette(tmp_path / "a.gpl", ["blue"])
-    assert read_palette(tmp_path / "a.gpl") == Palette(["red"])
-    write_palette(tmp_path / "a.gpl", ["blue"], overwrite=True)
-    assert read_palette(tmp_path / "a.gpl") == Palette(["blue"])
 
 
 test_what_cannot_be_written_is_refused = refused(
@@ -152,18 +144,8 @@ def test_a_color_is_found_by_its_name_whatever_the_capitals() -> None:
     assert Palette(["red"]).color_named("") is None
 
 
-@pytest.mark.parametrize(
-    ("name", "data", "is_one"),
-    [
-        ("a.gpl", b"", True),
-        ("a.csv", b"\xef\xbb\xbfname,Color\r\n", True),
-        ("a.csv", b'"red","green","blue"\n', True),
-        ("nodes.csv", b"node,x,y,z\n", False),
-        ("a.txt", HEAD, False),
-    ],
-)
-def test_files_of_paints_are_told_from_other_files(
-    tmp_path: Path, name: str, data: bytes, is_one: bool
-) -> None:
-    (tmp_path / name).write_bytes(data)
-    assert is_palette(tmp_path / name) is is_one
+def test_files_of_paints_are_told_from_other_files(tmp_path: Path) -> None:
+    files = {"a.gpl": b"", "a.csv": b'\xef\xbb\xbf"name",Color\r\n', "n.csv": b"node,x,y,z\n", "a.txt": HEAD}
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+    assert [name for name in files if is_palette(tmp_path / name)] == ["a.gpl", "a.csv"]

@@ -50,13 +50,11 @@ def test_what_is_no_regular_file_is_refused_without_waiting(
 
 
 def test_a_name_of_no_file_is_refused(tmp_path: Path) -> None:
-    loop, none = tmp_path / "loop", tmp_path / "none.obj"
-    loop.symlink_to(loop)
+    none = tmp_path / "none.obj"
     advice = "; check the name and its permissions"
     for path, sentence in (
         (Path("a\0b.obj"), "a file name must be valid on this system, not 'a\\x00b.obj'; correct it"),
         (Path("a" * 300), f"{'a' * 300}: it cannot be read (file name too long){advice}"),
-        (loop, f"{loop}: it cannot be read (too many levels of symbolic links){advice}"),
         (none, f"{none}: there is no such file or folder; check the name"),
     ):
         assert refusal(read_bytes, path, 100) == sentence
@@ -104,26 +102,14 @@ def test_names_of_other_places_are_refused_unless_files_outside_are_allowed(tmp_
     ]
 
 
-@pytest.mark.parametrize(
-    ("name", "stem"),
-    [
-        ("C:\\car", "C__car"),
-        ("line\nbreak\x00\x1f", "line_break__"),
-        (" купе é ", "купе é"),
-        # A space at the cut goes, too.
-        ("a" * 99 + " b", "a" * 99),
-        *((name, "scene") for name in ("", "..", "a/..", ". .")),
-    ],
-)
-def test_a_name_becomes_the_beginning_of_a_file_name(name: str, stem: str) -> None:
-    assert file_stem(name) == stem
-
-
 @given(st.text())
 @example("../../x")
 @example("a\\..\\b")
-@example(" " * 100 + "x")
 def test_any_name_becomes_a_file_in_the_folder_where_it_is_put(name: str) -> None:
+    names = {"C:\\car": "C__car", "line\nbreak\x00": "line_break_", " купе é ": "купе é", "a/..": "scene"}
+    # A space at the cut goes, too.
+    names["a" * 99 + " b"] = "a" * 99
+    assert {each: file_stem(each) for each in names} == names
     stem = file_stem(name)
     path = f"{stem}.png"
     assert Path(path).name == path

@@ -23,16 +23,6 @@ def created(parts: int = 1, **fields: Any) -> tuple[str, ...]:
     return scene_report([MeshReport(mesh_of(parts))], **given).created
 
 
-def test_of_a_bare_mesh_everything_is_created_and_said() -> None:
-    report = scene_report([MeshReport(cube())])
-    assert report.created == (
-        "a view was created that frames the object",
-        "4 studio lights were created",
-        "surface 'surface' was created",
-    )
-    assert (report.is_view_created, report.are_lights_created) == (True, True)
-
-
 def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
     names = ", ".join(f"'{part}'" for part in range(12))
     assert created(parts=12) == (f"12 surfaces were created: {names}",)

@@ -72,7 +72,6 @@ def test_a_table_is_read_however_programs_write_it(
         # Other separators in the header's quotes, and rows that end early, as in Excel's.
         ('"a,b,c";d;e\n1;2\n', {"a,b,c": "1", "d": "2", "e": ""}),
         ("sep=;\na,b;c\n1;2\n", {"a,b": "1", "c": "2"}),
-        ("\n;;\n a ; b \n\n x ;\n", {"a": "x", "b": ""}),
     ],
 )
 def test_what_a_row_says(text: str, expected: dict[str, str]) -> None:
