@@ -321,7 +321,7 @@ def output_of(path: Path) -> Format:
 
 
 def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
-    """A phrase for each part of a scene that a format cannot hold: "2 scalars ('stress, u')".
+    """A phrase for each part of a scene that a format cannot hold: "2 scalars ('stress', 'u')".
 
     If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
     """
@@ -347,5 +347,5 @@ def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
 
 def _counted(noun: str, names: Sequence[str]) -> str:
     """The number of things, and the first of their names; empty if there are none."""
-    plural = "s" if len(names) > 1 else ""
-    return f"{len(names):,} {noun}{plural} ({shown(', '.join(names))})" if names else ""
+    listed = ", ".join(map(shown, names[:5])) + (f" and {len(names) - 5:,} more" if names[5:] else "")
+    return f"{len(names):,} {noun}{'s' if names[1:] else ''} ({listed})" if names else ""

@@ -101,8 +101,8 @@ QUADS_TOLD = "the quads (6, each written as two triangles)"
             full_mesh(),
             STL,
             [
-                "2 parts ('hood, roof')",
-                "2 scalars ('stress, fault')",
+                "2 parts ('hood', 'roof')",
+                "2 scalars ('stress', 'fault')",
                 "the quads (1, each written as two triangles)",
             ],
         ),
@@ -110,7 +110,7 @@ QUADS_TOLD = "the quads (6, each written as two triangles)"
             dataclasses.replace(cube(), crease_angle=60, part_names=("cube", *map(str, range(1, 2005)))),
             NOTHING,
             [
-                "2,005 parts ('cube, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16,'...)",
+                "2,005 parts ('cube', '1', '2', '3', '4' and 2,000 more)",
                 QUADS_TOLD,
                 "the crease angle of 60 degrees",
             ],
