@@ -18,8 +18,9 @@ import platformdirs
 from autocolor.checks import Color
 from autocolor.errors import AutocolorError, OutputError
 from autocolor.files.reading import read_bytes
-from autocolor.files.writing import lock, write_atomically
+from autocolor.files.writing import write_atomically
 from autocolor.scene.kinds import SIX_DIGITS, ColorKind, in_digits
+from ramtek_emu.writing import lock
 
 MOST_COLORS: Final = 12
 MOST_FILES: Final = 10
@@ -34,12 +35,10 @@ def state_folder() -> Path:
     It is in `XDG_STATE_HOME`, or `~/.local/state` without it; on Windows in `LOCALAPPDATA`, and on macOS in
     `~/Library/Application Support`.
     """
-    with suppress(RuntimeError):
-        folder = Path(platformdirs.user_state_dir("autocolor", appauthor=False))
-        # Some versions return a relative path if there is no home.
-        if folder.is_absolute():
-            return folder
-    raise OutputError("the state folder must be in a home folder, and there is none; set XDG_STATE_HOME")
+    folder = Path(platformdirs.user_state_dir("autocolor", appauthor=False))
+    if not folder.is_absolute():
+        raise OutputError("the state folder must be in a home folder, and there is none; set XDG_STATE_HOME")
+    return folder
 
 
 def lock_file(path: Path) -> int | None:

@@ -176,7 +176,8 @@ def test_changed_bytes_are_refused_or_give_a_picture_that_can_be_shown(
 
 OF_SCALAR = "there must be a scalar at the pixels if the scene shows one, and none if it does not"
 OF_SMOOTH = "smooth must be a whole number that divides its lines and elements, (9, 12), not"
-OF_LIMITS = "shown_scalars: limits must be two finite numbers, the second above the first, not"
+OF_LIMITS = "shown_scalars: limits must be two finite numbers, the second above the first"
+OF_HEADER = "its header must be as autocolor wrote it, and is not"
 OF_INTENSITY = "every intensity must be a number from 0 to 3.4e+38"
 RASTER = (LINES, ELEMENTS)
 DARK = np.full(RASTER, -1, np.float32)
@@ -193,8 +194,8 @@ test_what_is_not_of_the_scene_is_refused = refused(
         (data, f"changed.npz: {sentence}; save the picture again")
         for data, sentence in (
             (edited(in_color, "scene.scalar", None), OF_SCALAR),
-            (edited(in_color, "scale", None), "it must have 'scale'"),
-            (edited(in_color, "shown_scalars", [3]), f"{OF_LIMITS} [3]"),
+            (edited(in_color, "scale", None), f"{OF_HEADER} ('scale')"),
+            (edited(in_color, "shown_scalars", [{"limits": [3, 3]}]), OF_LIMITS),
             *((edited(lit_wall, "smooth", value), f"{OF_SMOOTH} {value}") for value in (0, 2, 3.0)),
             *(
                 (edited(lit_wall, "scale", value), f"its scale must be a number above 0, not {shown(value)}")
@@ -210,14 +211,13 @@ test_what_is_not_of_the_scene_is_refused = refused(
                 )
                 for part, place in ((-1, FIRST), (1, FIRST), (2, FIRST), (0, SEEN))
             ),
-            (edited(lit_wall, "scene", []), "scene: it must be tables, its mesh among them, not []"),
+            (
+                edited(lit_wall, "scene", []),
+                f"{OF_HEADER} (list indices must be integers or slices, not str)",
+            ),
             (
                 edited(lit_wall, "scene.lights", None),
                 "lights must be a list of Light rows, not missing; add it",
-            ),
-            (
-                edited(lit_wall, "scene.mesh.crease_angle", None),
-                "mesh: crease_angle must be a number from 0 to 180, not nan",
             ),
             (
                 changed(in_color, relative_intensity=-DARK.reshape(12, 9)),

@@ -60,9 +60,6 @@ WRONG_CHANGES: dict[str, Callable[[Tables], object]] = {
     "there is no row of lights with name 'kye'; did you mean 'key'?": (
         lambda tables: tables.update("lights", "kye", on=1)
     ),
-    "an update must change a column, not none; give one as in intensity=2.0": (
-        lambda tables: tables.update("lights", "key")
-    ),
     f"{SMALL}lights, row 1: intensity must be a finite number of at least 0, not -1.0": (
         lambda tables: tables.update("lights", "key", intensity=-1)
     ),
