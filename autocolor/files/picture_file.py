@@ -148,9 +148,8 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
     if scalar is not None and np.isinf(scalar).any():
         raise InputError("a scalar must have a finite number or NaN at each pixel, not infinity")
     names, of_part = tuple(surface.name for surface in scene.surfaces), scene.mesh.part_names
-    shown_limits = limits[0] if limits else None
     return Picture.from_rasters(
-        relative, surfaces, names, float(scale), scalar, shown_limits, parts, of_part, smooth
+        relative, surfaces, names, float(scale), scalar, next(iter(limits), None), parts, of_part, smooth
     )
 
 

@@ -62,9 +62,6 @@ def test_a_list_that_cannot_be_written_is_no_error(state: Path) -> None:
     state.unlink()
     note_color((255, 0, 0))
     assert state.stat().st_mode & 0o777 == 0o700
-    (state / FILES).mkdir()
-    note_file("/scene")
-    assert (recent_colors(), recent_files()) == (((255, 0, 0),), ())
 
 
 def test_without_a_home_there_are_no_lists_and_the_variable_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,14 +8,13 @@ from contextlib import suppress
 from functools import partial
 from itertools import count
 from pathlib import Path
-from unittest.mock import Mock
 
 import pytest
 from click.testing import CliRunner
 
 from autocolor import read_scene
 from autocolor.commands.autocolor import autocolor
-from autocolor.errors import AutocolorError, InputError, OutputError, WriteError
+from autocolor.errors import InputError, OutputError, WriteError
 from autocolor.files import writing
 from autocolor.files.opening import kind_of
 from autocolor.files.reading import read_bytes
@@ -38,17 +37,6 @@ def test_what_is_no_place_for_a_file_is_refused_at_once(tmp_path: Path, name: st
             write(tmp_path / name, overwrite=False)
     assert (tmp_path / "old.npz").read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["old.npz"]
-
-
-@pytest.mark.parametrize(("number", "kind"), [(errno.ENOSPC, WriteError), (errno.EROFS, OutputError)])
-def test_after_a_failure_the_old_file_is_whole(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, kind: type[AutocolorError]
-) -> None:
-    (tmp_path / "a.npz").write_bytes(b"old")
-    monkeypatch.setattr(os, "fsync", Mock(side_effect=OSError(number, os.strerror(number))))
-    with pytest.raises(kind, match=os.strerror(number).lower()):
-        write_atomically(tmp_path / "a.npz", b"new", overwrite=True)
-    assert (tmp_path / "a.npz").read_bytes() == b"old"
 
 
 # Folders of tables.

@@ -147,10 +147,8 @@ ROW = f"its numbers must be from 0 to {NODES - 1}, not"
     ("name", "table", "sentence"),
     [
         ("nodes", FAR, f"{WITHIN}, not [0.0, nan, 0.0] (row 7, counted from 0); correct that row"),
-        ("nodes", np.full((8, 3), 2e30, np.float32), f"{WITHIN}, not [2"),
         ("polygons", np.zeros((2, 5), int), "its shape must be (rows, 4), not (2, 5); write it again"),
         ("polygons", np.full((2, 4), NODES), f"{ROW} [{NODES}, {NODES}, {NODES}, {NODES}] (row 0"),
-        ("polygons", np.full((1, 4), 2**63 + 1, np.uint64), f"{ROW} [9223372036854775809, 92"),
         ("polygons", np.zeros((2, 4)), "its numbers must be whole, not float64; convert them"),
         ("parts", np.zeros(5, int), f"its shape must be ({POLYGONS},), not (5,); write it again"),
         ("parts", np.arange(POLYGONS) // 4 * 9, "its numbers must be from 0 to 1, not 9 (row 4"),
@@ -159,7 +157,6 @@ ROW = f"its numbers must be from 0 to {NODES - 1}, not"
         ("scalars/1", np.zeros(7), f"its shape must be ({NODES},), not (7,)"),
         ("planes", np.zeros((2, 7)), UNITS),
         ("plane_numbers", np.full(POLYGONS, 9), "its numbers must be from -1 to"),
-        ("plane_sides", np.full(POLYGONS, 9), "its numbers must be from 0 to 1, not 9"),
     ],
 )
 def test_a_bad_or_missing_table_is_refused_with_its_name_its_row_and_the_remedy(
@@ -214,11 +211,9 @@ def described(text: bytes) -> bytes:
 @pytest.mark.parametrize(
     "data",
     [
-        *(saved(np.array(value)) for value in (["a"], [1 + 2j], 3.0, [[[1.0]]])),
-        *(b"", b"\x93NUMPY\1\0\xff\xff", b"\x80\4N."),
-        *(described(HEADER.replace(b"3,", size)) for size in (b"-3,", b"1.5,", b"9" * 19 + b",")),
-        *(described(text) for text in (b"__import__('os')", b"(" * 900)),
-        saved(np.zeros((10, 3)))[:-1],
+        *(saved(np.array(value)) for value in (["a"], 3.0)),
+        *(b"", b"\x80\4N.", saved(np.zeros((10, 3)))[:-1]),
+        *(described(text) for text in (HEADER.replace(b"3,", b"9" * 19 + b","), b"(" * 900)),
     ],
     ids=repr,
 )

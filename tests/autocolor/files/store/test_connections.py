@@ -153,15 +153,12 @@ def test_a_journal_that_a_program_keeps_for_its_next_change_is_no_hindrance(tmp_
         assert brightness(path) == 9.0
 
 
-@pytest.mark.parametrize(("mode", "ending"), [("WAL", "-wal"), ("DELETE", "-journal")])
-def test_no_store_is_made_beside_a_file_that_would_be_played_into_it(
-    tmp_path: Path, mode: str, ending: str
-) -> None:
+def test_no_store_is_made_beside_a_file_that_would_be_played_into_it(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    killed_change(path, mode)
+    killed_change(path, "WAL")
     path.unlink()
     before = contents(tmp_path)
-    with pytest.raises(WriteError, match=f"must have no small.sqlite{ending} beside it, because SQLite"):
+    with pytest.raises(WriteError, match="-wal beside it, because SQLite would"):
         change(path)
     assert contents(tmp_path) == before
 
@@ -184,28 +181,20 @@ def test_a_program_that_has_the_store_is_waited_for_and_then_refused(
         other.execute("COMMIT")
         other.execute("PRAGMA journal_mode = WAL")
         other.execute(BRIGHTER)
-        with closing(in_memory(store_content(path))) as connection:
-            assert connection.execute(BRIGHTNESS).fetchone() == (3.0,)
         with pytest.raises(WriteError, match=sentence):
             change(path)
         other.execute(BRIGHTER)
     assert brightness(path) == 4.0
 
 
-def test_nobody_else_changes_a_store_while_it_is_changed(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    with replacing(path, lambda: None) as (_, save):
-        assert brightness(path) == 1.0
-        with pytest.raises(sqlite3.OperationalError, match="database is locked"):
-            run(path, "PRAGMA busy_timeout = 0", BRIGHTER)
-        save(store_bytes(small_scene().with_light("key", intensity=9.0)))
-    assert brightness(path) == 9.0
-
-
-def test_a_store_that_is_replaced_while_it_is_changed_stays(tmp_path: Path) -> None:
+def test_nobody_else_changes_a_store_while_it_is_changed_and_one_that_is_replaced_stays(
+    tmp_path: Path,
+) -> None:
     path, other = small_store(tmp_path), small_store(tmp_path, "other.sqlite")
     run(other, BRIGHTER)
     with replacing(path, lambda: None) as (_, save):
+        with pytest.raises(sqlite3.OperationalError, match="database is locked"):
+            run(path, "PRAGMA busy_timeout = 0", BRIGHTER)
         os.replace(other, path)
         with pytest.raises(WriteError, match="another program replaced it; nothing was saved, so try again"):
             save(store_bytes(small_scene()))
@@ -241,11 +230,8 @@ def test_a_store_that_is_write_protected_is_read_and_not_replaced(
 
 REFUSED = """\
 ATTACH 'other.db' AS other
-SELECT * FROM nodes WHERE nodes MATCH 'a'
 SELECT FTS3_Tokenizer('simple', x'00')
 PRAGMA journal_mode = WAL
-VACUUM INTO 'x'
-CREATE TABLE other (x)
 DROP VIEW far
 DELETE FROM sqlite_master
 DELETE FROM far"""

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from autocolor import InputError, OutputError, Scene, WriteError
-from autocolor.files.store.schema import DEFINITIONS, INDEXES
 from autocolor.files.store.store_file import read_store, store_bytes, write_store
 from autocolor.scene.creation import scene_of
 from tests.autocolor.files.store.stores import is_equal, loosen, run, small_scene, small_store
@@ -56,23 +55,19 @@ UPDATE polygons SET part = 'hod' WHERE polygon = 1
   polygons, row 1: part must be in the part table, not 'hod'; did you mean 'hood'?
 
 LOOSE nodes
-UPDATE nodes SET x = 'a', y = NULL WHERE node = 2
-  nodes, row 2: x must be a number of at most 1e+30 in size, not 'a'; correct it
+UPDATE nodes SET x = NULL, y = 'a' WHERE node = 2
+  nodes, row 2: x must be a number of at most 1e+30 in size, not missing; correct it
 
 UPDATE nodes SET z = 9e999 WHERE node = 2
   nodes, row 2: z must be a number of at most 1e+30 in size, not inf; correct it
-
-LOOSE nodes
-UPDATE nodes SET node = 1.5 WHERE node = 4
-  nodes, row 1.5: node must be a whole number, not 1.5; correct it
 
 LOOSE nodes
 UPDATE nodes SET node = 3 WHERE node = 2
   nodes: rows must have different numbers, and 3 is repeated; number them anew
 
 LOOSE polygons
-UPDATE polygons SET node2 = NULL WHERE polygon = 1
-  polygons, row 1: node2 must be a whole number, not missing; correct it
+UPDATE polygons SET node2 = 1.5 WHERE polygon = 1
+  polygons, row 1: node2 must be a whole number, not 1.5; correct it
 
 UPDATE lights SET intensity = -1, "on" = 2, aim_x = NULL WHERE name = 'key'
 UPDATE surfaces SET model = 'gloss' WHERE name = 'glass'
@@ -148,37 +143,17 @@ def test_additions_of_others_stay_and_none_is_run_when_a_store_is_saved_over(tmp
     assert run(path, "PRAGMA integrity_check") == [("ok",)]
 
 
-@pytest.mark.parametrize(
-    ("statements", "problem"),
-    [
-        (("CREATE UNIQUE INDEX one ON nodes (z > 9)",), "UNIQUE constraint failed: index 'one'"),
-        (
-            ("ALTER TABLE lights RENAME TO other", "CREATE VIEW lights AS SELECT * FROM other"),
-            "use DROP VIEW to delete view lights",
-        ),
-    ],
-)
-def test_an_addition_that_does_not_fit_keeps_the_store_as_it_is(
-    tmp_path: Path, statements: tuple[str, ...], problem: str
-) -> None:
+def test_an_addition_that_does_not_fit_keeps_the_store_as_it_is(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    run(path, "DELETE FROM nodes WHERE node > 1", *statements)
+    run(path, "DELETE FROM nodes WHERE node > 1", "CREATE UNIQUE INDEX one ON nodes (z > 9)")
     before = path.read_bytes()
     with pytest.raises(WriteError) as refused:
         write_store(path, small_scene(), overwrite=True)
     assert str(refused.value) == (
         "small.sqlite: what other programs added to a store must fit the tables of the scene, and does not"
-        f" ({problem}); drop it, or write to another file"
+        " (UNIQUE constraint failed: index 'one'); drop it, or write to another file"
     )
     assert path.read_bytes() == before
-
-
-def test_a_table_of_another_definition_is_made_anew_beside_the_additions_of_others(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(path, "ALTER TABLE lights ADD COLUMN weight REAL", "DROP INDEX polygons_part", ADDITIONS[0])
-    write_store(path, small_scene(), overwrite=True)
-    definitions = dict(run(path, "SELECT name, sql FROM sqlite_master"))
-    assert definitions.items() >= {**DEFINITIONS, **INDEXES}.items()
 
 
 def test_rows_are_read_from_tables_and_not_from_indexes_that_are_out_of_date(tmp_path: Path) -> None:
