@@ -18,9 +18,8 @@ import platformdirs
 from autocolor.checks import Color
 from autocolor.errors import AutocolorError, OutputError
 from autocolor.files.reading import read_bytes
-from autocolor.files.writing import write_atomically
+from autocolor.files.writing import lock, write_atomically
 from autocolor.scene.kinds import SIX_DIGITS, ColorKind, in_digits
-from ramtek_emu.writing import lock
 
 MOST_COLORS: Final = 12
 MOST_FILES: Final = 10

@@ -18,6 +18,7 @@ import ramtek_emu
 from autocolor.arrays import AnyArray
 from autocolor.errors import InputError, MissingInputError, OutputError, UsageError, WriteError, reason_of
 from ramtek_emu import writing
+from ramtek_emu.writing import lock as lock
 
 Guard = Callable[[Path], Callable[[], None]]
 """A check before a file is overwritten, which returns a second check for the moment of overwriting.
@@ -217,7 +218,7 @@ def _saving_alone(folder: Path) -> Iterator[None]:
         try:
             descriptor = os.open(folder, os.O_RDONLY)
             stack.callback(os.close, descriptor)
-            writing.lock(descriptor)
+            lock(descriptor)
         except BlockingIOError:
             raise WriteError(
                 f"tables must be saved by one program at a time, and another one saves to {folder}; try again"
