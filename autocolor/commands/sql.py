@@ -112,11 +112,10 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, sta
         with as_usage():
             raise InputError(["nothing was changed", *error.problems]) from None
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
-    path = Path(source.path)
-    if not is_store(path):
+    if not is_store(Path(source.path)):
         from autocolor.files.scene_writing import write_scene
 
-        tell_written(*map(str, write_scene(path, tables.scene(), overwrite=True)))
+        tell_written(*map(str, write_scene(source.path, tables.scene(), overwrite=True)))
 
 
 WIDEST: Final = 60

@@ -41,7 +41,8 @@ def stamp_of(path: Path) -> str | None:
 def numbers_of(path: Path) -> tuple[int, ...] | None:
     """Numbers that differ after a file or its log was changed; None if it is missing. It is not opened."""
     numbers = status_numbers(path)
-    return numbers and sum((status_numbers(log) or () for log in _beside(path, "-wal")), numbers)
+    # The time and the size of a log: SQLite changes its status also to read.
+    return numbers and sum(((status_numbers(log) or ())[2::2] for log in _beside(path, "-wal")), numbers)
 
 
 def look_at(path: Path) -> tuple[int, ...] | None:
@@ -54,8 +55,8 @@ def look_at(path: Path) -> tuple[int, ...] | None:
 def _beside(path: Path, ending: str) -> list[Path]:
     """The write-ahead log or the journal of a store, if there is any; SQLite creates an empty log to read."""
     beside = Path(f"{os.path.realpath(path)}{ending}")
-    is_store = path.suffix.lower() in STORE_SUFFIXES
-    return [beside] if is_store and beside.exists() and beside.stat().st_size else []
+    size = (status_numbers(beside) or (0,))[-1]
+    return [beside] if size and path.suffix.lower() in STORE_SUFFIXES else []
 
 
 def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str, int, int]]:
