@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import re
 import sys
@@ -13,7 +12,7 @@ from functools import partial
 from itertools import chain, islice
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Final, TextIO
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -25,7 +24,6 @@ from ramtek_emu.command_line import SIGNALS, tell
 from ramtek_emu.errors import escaped
 
 if TYPE_CHECKING:
-    from autocolor.files.scene_report import SceneReport
     from autocolor.files.store.tables import Tables, Value
 
 EXAMPLES: Final = """\b
@@ -65,7 +63,20 @@ def sql(
     SCENE is a store (.sqlite) or any other scene. `.schema` at the prompt shows the tables; docs/STORE.md
     describes them. A change is checked like a scene file; if it breaks a rule, nothing is changed.
     """
-    tables, report = _opened(source, write)
+    from autocolor.files.store.tables import is_store, open_tables, tables_of
+
+    # A store is never repaired, and has no report.
+    path, report = Path(source.path), None
+    if is_store(path):
+        tables = open_tables(path)
+    elif write and not (path.is_dir() or path.suffix.lower() == ".toml"):
+        raise UsageError(
+            f"--write must save to a store or to a scene's folder, not to {path}; make a scene of it with"
+            " `autocolor tables --write`"
+        )
+    else:
+        report = read(source)
+        tables = tables_of(report.scene)
     tables.seconds = seconds
     run = partial(_run, tables, source, write, form)
 
@@ -75,25 +86,13 @@ def sql(
         elif sys.stdin is not None and sys.stdin.isatty():
             prompt(tables, run)
         else:
-            for each in statements_in(sys.stdin or io.StringIO()):
+            try:
+                text = sys.stdin.read() if sys.stdin else ""
+            except UnicodeDecodeError:
+                raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
+            for each in filter(None, split(text)):
                 run(each)
     context.exit(0 if report is None else ended(report, source))
-
-
-def _opened(source: SceneSource, write: bool) -> tuple[Tables, SceneReport | None]:
-    """The tables of a scene, and the report of its reading; None for a store, which is never repaired."""
-    from autocolor.files.store.tables import is_store, open_tables, tables_of
-
-    path = Path(source.path)
-    if is_store(path):
-        return open_tables(path), None
-    if write and not (path.is_dir() or path.suffix.lower() == ".toml"):
-        raise UsageError(
-            f"--write must save to a store or to a scene's folder, not to {path}; make a scene of it with"
-            " `autocolor tables --write`"
-        )
-    report = read(source)
-    return tables_of(report.scene), report
 
 
 def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, statement: str) -> None:
@@ -113,15 +112,11 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, sta
         with as_usage():
             raise InputError(["nothing was changed", *error.problems]) from None
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
-    path = Path(source.path)
-    if not is_store(path):
+    if not is_store(Path(source.path)):
         from autocolor.files.scene_writing import write_scene
 
-        tell_written(*map(str, write_scene(path, tables.scene(), overwrite=True)))
+        tell_written(*map(str, write_scene(source.path, tables.scene(), overwrite=True)))
 
-
-MEASURED: Final = 1000
-"""The number of rows that determine the widths of columns; wider cells in later rows are not aligned."""
 
 WIDEST: Final = 60
 """Limit: letters of a cell of a table; longer text is cut."""
@@ -141,7 +136,8 @@ def lines_of(columns: tuple[str, ...], rows: Iterator[tuple[Value, ...]], form: 
             opening = ","
         yield "[]" if opening == "[" else "]"
     elif columns:
-        first = list(islice(rows, MEASURED))
+        # These determine the widths of columns; wider cells in later rows are not aligned.
+        first = list(islice(rows, 1000))
         widths = [max(len(_cell(value)) for value in column) for column in zip(columns, *first, strict=True)]
         for row in chain([columns, tuple("-" * width for width in widths)], first, rows):
             sides = [">" if isinstance(value, (int, float)) else "<" for value in row]
@@ -218,14 +214,6 @@ def _show(words: Sequence[str], tables: Tables) -> None:
                 tell(*f"{row['sql']!s};".split("\n"), err=False)
     else:
         click.echo(GREETING, err=True)
-
-
-def statements_in(file: TextIO) -> list[str]:
-    """The statements of a file. The last statement may lack its semicolon. Raises UsageError."""
-    try:
-        return [statement for statement in split(file.read()) if statement]
-    except UnicodeDecodeError:
-        raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
 
 
 def split(text: str) -> list[str]:

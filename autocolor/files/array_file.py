@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import AnyArray
-from autocolor.checks import printable, shown
+from autocolor.checks import printable
 from autocolor.errors import InputError
 from autocolor.files.reading import bounded_json, opened, require_size
 from autocolor.immutable import read_only
@@ -30,64 +30,59 @@ from autocolor.scene.scalar import MeshScalar
 GROWTH: Final = 3
 """Measured: how many times the size of its arrays a file takes while it is read."""
 
-MOST_VALUES: Final = 1_000_000
-LARGEST_ARRAY_HEADER: Final = 1024
-
 ArrayType = tuple[str, tuple[int | None, ...]]
 """The dtype and the shape of a member; None is any size."""
 
-MESH_TYPES: Final[Mapping[str, ArrayType]] = {
+MESH_TABLES: Final = ("coordinates", "node_numbers", "part_numbers")
+
+TYPES: Final[Mapping[str, ArrayType]] = {
+    "header": ("|u1", (None,)),
     "coordinates": ("<f8", (None, 3)),
     "node_numbers": ("<i4", (None, 4)),
     "part_numbers": ("<i4", (None,)),
-}
-OTHER_TYPES: Final[Mapping[str, ArrayType]] = {
-    "header": ("|u1", (None,)),
     "mesh_scalar": ("<f8", (None,)),
     "own_normal": ("<f4", (None, 3)),
     "own_normal_number": ("<i4", (None, 4)),
 }
-"""The other members that a mesh may have, without the numbers at the ends of their names."""
-
-SCALARS: Final = "mesh_scalars"
-"""The key of the list in the header whose rows are tables of `name` and `of`."""
+"""The members that every file may have, without the numbers at the ends of their names."""
 
 
 @dataclass(frozen=True)
 class ArrayFileKind:
     """One kind of array file.
 
-    Messages use `noun`, and `advice` for damaged files. `formats` are the readable values of `format` in the
-    header; the first is written. `types` are the types of members besides those of a mesh.
+    Messages use `noun`, and `advice` for damaged files. `format` is in the header. `types` are the types of
+    members besides those of a mesh.
     """
 
     noun: str
     advice: str
-    formats: tuple[str, ...]
+    format: str
     types: Mapping[str, ArrayType]
 
     def type_of(self, member: str) -> ArrayType:
         """The type of a member. Raises KeyError if a file cannot have it."""
-        return {**MESH_TYPES, **OTHER_TYPES, **self.types}[member.rstrip("_0123456789")]
+        return {**TYPES, **self.types}[member.rstrip("_0123456789")]
 
     @contextmanager
     def naming(self, file: str) -> Iterator[None]:
         """Add the name of the file and the advice to each problem of its header and its arrays."""
         try:
             yield
-        except KeyError as error:
-            raise InputError(f"{file}: it must have {error}; {self.advice}") from None
         except InputError as error:
             raise InputError(f"{file}: {each[:400]}; {self.advice}" for each in error.problems[:20]) from None
+        except (LookupError, TypeError) as error:
+            reason = f"its header must be as autocolor wrote it, and is not ({error})"
+            raise InputError(f"{file}: {reason}; {self.advice}") from None
 
 
 def array_file_bytes(
     kind: ArrayFileKind, mesh: Mesh, header: Mapping[str, Any], arrays: Mapping[str, AnyArray]
 ) -> bytes:
-    """The content of a file with a mesh, of the first format of its kind; the same for equal values."""
+    """The content of a file with a mesh of a kind; the same for equal values."""
     scalars = [{"name": scalar.name, "of": scalar.of} for scalar in mesh.scalars]
-    text = json.dumps({"format": kind.formats[0], SCALARS: scalars, **header}, allow_nan=False).encode()
-    members = {"header": np.frombuffer(text, np.uint8), **{name: getattr(mesh, name) for name in MESH_TYPES}}
+    text = json.dumps({"format": kind.format, "mesh_scalars": scalars, **header}, allow_nan=False).encode()
+    members = {"header": np.frombuffer(text, np.uint8), **{name: getattr(mesh, name) for name in MESH_TABLES}}
     members |= {f"mesh_scalar_{number}": scalar.values for number, scalar in enumerate(mesh.scalars)}
     if mesh.own_normals is not None:
         members["own_normal_0"] = mesh.own_normals.vectors
@@ -112,9 +107,9 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> tuple[dict[str, Any], 
                 require_size(source.name, sum(member.file_size for member in archive.infolist()), GROWTH)
                 names = [name.removesuffix(".npy") for name in archive.namelist()]
                 arrays = {name: _array(archive, name, kind.type_of(name)) for name in names}
-            header = bounded_json(arrays.pop("header").tobytes(), MOST_VALUES)
-            if not isinstance(header, dict) or header.get("format") not in kind.formats:
-                raise ValueError(f"its format must be {kind.formats[0]!r}")
+            header = bounded_json(arrays.pop("header").tobytes(), 1_000_000)
+            if not isinstance(header, dict) or header.get("format") != kind.format:
+                raise ValueError(f"its format must be {kind.format!r}")
             return header, arrays
         except (InputError, MemoryError):
             raise
@@ -132,7 +127,7 @@ def _array(archive: zipfile.ZipFile, name: str, wanted: ArrayType) -> AnyArray:
     data = archive.read(f"{name}.npy")
     stream = io.BytesIO(data)
     np.lib.format.read_magic(stream)
-    shape, is_by_columns, dtype = np.lib.format.read_array_header_1_0(stream, LARGEST_ARRAY_HEADER)
+    shape, is_by_columns, dtype = np.lib.format.read_array_header_1_0(stream, 1024)
     sizes = wanted[1]
     fits = len(shape) == len(sizes) and all(n in (None, size) for n, size in zip(sizes, shape, strict=True))
     if is_by_columns or dtype.str != wanted[0] or not fits:
@@ -141,24 +136,18 @@ def _array(archive: zipfile.ZipFile, name: str, wanted: ArrayType) -> AnyArray:
 
 
 def mesh_of(
-    header: Mapping[str, Any], arrays: Mapping[str, AnyArray], part_names: object, crease_angle: Any
+    header: Mapping[str, Any], arrays: Mapping[str, AnyArray], part_names: Any, crease_angle: Any
 ) -> Mesh:
-    """The mesh of the header and the arrays of a file. Raises InputError."""
-    scalars = []
-    rows = header.get(SCALARS, [])
-    for number, row in enumerate(rows if isinstance(rows, list) else [rows]):
-        values = arrays.get(f"mesh_scalar_{number}")
-        if not isinstance(row, Mapping) or row.keys() != {"name", "of"} or values is None:
-            raise InputError(
-                f"{SCALARS}[{number + 1}] must be a table of name and of, with values, not {shown(row)}"
-            )
-        scalars.append(MeshScalar(row["name"], values, row["of"]))
+    """The mesh of the header and the arrays of a file. Raises InputError, LookupError and TypeError."""
+    scalars = [
+        MeshScalar(row["name"], arrays[f"mesh_scalar_{number}"], row["of"])
+        for number, row in enumerate(header["mesh_scalars"])
+    ]
     own = None
     if "own_normal_0" in arrays:
         numbers = arrays.get("own_normal_number_0", np.empty((0, 4), np.intp))
         # The renderer works on columns.
         vectors = np.asfortranarray(arrays["own_normal_0"])
         own = NodeNormals(read_only(vectors), read_only(np.asfortranarray(numbers, np.intp)))
-    names = tuple(part_names) if isinstance(part_names, (list, tuple)) else ()
-    coordinates, node_numbers, part_numbers = (arrays[name] for name in MESH_TYPES)
-    return Mesh(coordinates, node_numbers, part_numbers, names, crease_angle, tuple(scalars), own)
+    coordinates, node_numbers, part_numbers = (arrays[name] for name in MESH_TABLES)
+    return Mesh(coordinates, node_numbers, part_numbers, part_names, crease_angle, tuple(scalars), own)

@@ -12,7 +12,6 @@ pixel of an image is the mean of a square of so many pixels a side.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -35,7 +34,7 @@ from autocolor.scene.scene import Scene
 PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
-    formats=("autocolor picture 4",),
+    format="autocolor picture 4",
     types={
         "relative_intensity": ("<f4", (None, None)),
         "surface_number": ("|u1", (None, None)),
@@ -102,19 +101,14 @@ def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> Sa
         header, arrays = read_array_file(PICTURE_FILE, source)
     with PICTURE_FILE.naming(source.name):
         plain = header["scene"]
-        mesh = plain.get("mesh") if isinstance(plain, Mapping) else None
-        if not isinstance(mesh, Mapping):
-            raise InputError(f"scene: it must be tables, its mesh among them, not {shown(plain)}")
-        angle = mesh.get("crease_angle", math.nan)
-        whole = mesh_of(header, arrays, mesh.get("part_names"), angle)
-        scene = from_plain(Scene, {**plain, "mesh": whole})
+        mesh = mesh_of(header, arrays, plain["mesh"]["part_names"], plain["mesh"]["crease_angle"])
+        scene = from_plain(Scene, {**plain, "mesh": mesh})
         return SavedPicture(_picture(header, scene, arrays), scene)
 
 
 def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyArray]) -> Picture:
     """The picture of the rasters and the header. Raises InputError if they or the scene do not match."""
     scale, smooth = header["scale"], header.get("smooth", 1)
-    names = [surface.name for surface in scene.surfaces]
     relative, surfaces = arrays["relative_intensity"], arrays["surface_number"]
     parts, scalar = arrays["part_number"], arrays.get("scalar_0")
     shape = relative.shape
@@ -143,25 +137,20 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
             f"a part number must be that of a part of the surface there, {surfaces[line, element]}, not"
             f" {parts[line, element]} (line {line}, element {element})"
         )
-    limits = _limits(header["shown_scalars"])
-    if not (scalar is None) == (limits is None) == (scene.scalar is None):
+    try:
+        limits = [LimitsKind().accepted(row["limits"]) for row in header["shown_scalars"]]
+    except (ValueError, OverflowError):
+        raise InputError(f"shown_scalars: limits {LimitsKind().rule()}") from None
+    if not (scalar is not None) == len(limits) == (scene.scalar is not None):
         raise InputError(
             "there must be a scalar at the pixels if the scene shows one, and none if it does not"
         )
     if scalar is not None and np.isinf(scalar).any():
         raise InputError("a scalar must have a finite number or NaN at each pixel, not infinity")
+    names, of_part = tuple(surface.name for surface in scene.surfaces), scene.mesh.part_names
     return Picture.from_rasters(
-        relative, surfaces, tuple(names), float(scale), scalar, limits, parts, scene.mesh.part_names, smooth
+        relative, surfaces, names, float(scale), scalar, next(iter(limits), None), parts, of_part, smooth
     )
-
-
-def _limits(rows: object) -> tuple[float, float] | None:
-    """The scalar's own range of a list with one row or none. Raises InputError."""
-    try:
-        limits = [LimitsKind().accepted(row["limits"]) for row in rows]  # type: ignore[attr-defined]
-    except (KeyError, TypeError, ValueError, OverflowError):
-        raise InputError(f"shown_scalars: limits {LimitsKind().rule()}, not {shown(rows)}") from None
-    return limits[0] if limits else None
 
 
 def plain_scene(scene: Scene) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from autocolor.files.paths import STORE_SUFFIXES, path_within
 from autocolor.files.reading import opened, read_bytes, read_head
 from autocolor.files.scene_toml.scene_meshes import MESH_FILE_KEYS, entries_of
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT
+from autocolor.files.writing import status_numbers
 
 
 def stamp_of(path: Path) -> str | None:
@@ -26,7 +27,7 @@ def stamp_of(path: Path) -> str | None:
     """
     digest = hashlib.sha256()
     try:
-        for each in (path, *_logs(path)):
+        for each in (path, *_beside(path, "-wal")):
             with opened(each) as (file, _):
                 hashlib.file_digest(file, lambda: digest)
         if path.suffix.lower() == ".toml":
@@ -38,36 +39,27 @@ def stamp_of(path: Path) -> str | None:
 
 
 def numbers_of(path: Path) -> tuple[int, ...] | None:
-    """Numbers that differ after a file was changed; None if it is missing. The file is not opened."""
-    try:
-        status, *logs = [os.stat(each) for each in (path, *_logs(path))]
-    except (OSError, ValueError):
-        return None
-    # A program may set the time of a change, but not the time when the status changed.
-    numbers = status.st_ino, status.st_mtime_ns, status.st_ctime_ns, status.st_size
-    return (*numbers, *(number for log in logs for number in (log.st_mtime_ns, log.st_size)))
+    """Numbers that differ after a file or its log was changed; None if it is missing. It is not opened."""
+    numbers = status_numbers(path)
+    # The time and the size of a log: SQLite changes its status also to read.
+    return numbers and sum(((status_numbers(log) or ())[2::2] for log in _beside(path, "-wal")), numbers)
 
 
 def look_at(path: Path) -> tuple[int, ...] | None:
     """`numbers_of` a file; None also while a program writes to a store, and has a journal to go back."""
-    is_store = path.suffix.lower() in STORE_SUFFIXES
     # A journal that is not needed begins with zeros.
-    has_journal = is_store and read_head(_beside(path, "-journal"))[:1].strip(b"\0")
+    has_journal = any(read_head(each)[:1].strip(b"\0") for each in _beside(path, "-journal"))
     return None if has_journal else numbers_of(path)
 
 
-def _beside(store: Path, ending: str) -> Path:
-    """The write-ahead log or the journal of a store."""
-    return Path(f"{os.path.realpath(store)}{ending}")
+def _beside(path: Path, ending: str) -> list[Path]:
+    """The write-ahead log or the journal of a store, if there is any; SQLite creates an empty log to read."""
+    beside = Path(f"{os.path.realpath(path)}{ending}")
+    size = (status_numbers(beside) or (0,))[-1]
+    return [beside] if size and path.suffix.lower() in STORE_SUFFIXES else []
 
 
-def _logs(path: Path) -> list[Path]:
-    """The write-ahead log of a store, if there is any; SQLite creates an empty log even to read."""
-    log = _beside(path, "-wal")
-    return [log] if path.suffix.lower() in STORE_SUFFIXES and log.exists() and log.stat().st_size else []
-
-
-def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str | int, ...]]:
+def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str, int, int]]:
     """The names, times and sizes of the mesh files that a scene file names. Raises OSError."""
     try:
         entries = entries_of(read_bytes(scene_file, LARGEST_TEXT))
@@ -77,8 +69,7 @@ def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str | int, ...]]:
         names = entry.items() if isinstance(entry, Mapping) else ()
         for name in [name for key, name in names if key in MESH_FILE_KEYS and isinstance(name, str)]:
             path = path_within([], scene_file.parent, name)
-            if path is None or not path.exists():
-                continue
-            for file in sorted(path.iterdir()) if path.is_dir() else [path]:
-                status = file.stat()
-                yield file.name, status.st_mtime_ns, status.st_size
+            if path is not None and path.exists():
+                for file in sorted(path.iterdir()) if path.is_dir() else [path]:
+                    status = file.stat()
+                    yield file.name, status.st_mtime_ns, status.st_size

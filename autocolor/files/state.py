@@ -34,12 +34,10 @@ def state_folder() -> Path:
     It is in `XDG_STATE_HOME`, or `~/.local/state` without it; on Windows in `LOCALAPPDATA`, and on macOS in
     `~/Library/Application Support`.
     """
-    with suppress(RuntimeError):
-        folder = Path(platformdirs.user_state_dir("autocolor", appauthor=False))
-        # Some versions return a relative path if there is no home.
-        if folder.is_absolute():
-            return folder
-    raise OutputError("the state folder must be in a home folder, and there is none; set XDG_STATE_HOME")
+    folder = Path(platformdirs.user_state_dir("autocolor", appauthor=False))
+    if not folder.is_absolute():
+        raise OutputError("the state folder must be in a home folder, and there is none; set XDG_STATE_HOME")
+    return folder
 
 
 def lock_file(path: Path) -> int | None:

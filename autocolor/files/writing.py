@@ -10,13 +10,15 @@ import shutil
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
+
+import numpy as np
 
 import ramtek_emu
+from autocolor.arrays import AnyArray
 from autocolor.errors import InputError, MissingInputError, OutputError, UsageError, WriteError, reason_of
 from ramtek_emu import writing
-
-lock = writing.lock
+from ramtek_emu.writing import lock as lock
 
 Guard = Callable[[Path], Callable[[], None]]
 """A check before a file is overwritten, which returns a second check for the moment of overwriting.
@@ -28,6 +30,16 @@ Both raise OutputError. The second check opens no file: closing a store would en
 def no_guard(_: Path) -> Callable[[], None]:
     """The guard that lets every file be overwritten."""
     return lambda: None
+
+
+def status_numbers(path: Path) -> tuple[int, ...] | None:
+    """Numbers that differ after a file was changed or replaced; None if it is missing. It is not opened."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    # A program may set the time of a change, but not the time when the status changed.
+    return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_ctime_ns, status.st_size
 
 
 def write_atomically(
@@ -120,31 +132,28 @@ def read_together(folder: Path, first: str, read: Callable[[], Result]) -> Resul
     `read` is called again. Raises InputError if saves come all the time, and the errors of `read`.
     """
 
-    def stamps() -> list[tuple[int, int]]:
-        found = []
-        for path in (folder / SAVED, folder / first):
-            with suppress(OSError, ValueError):
-                status = os.stat(path)
-                found.append((status.st_ino, status.st_mtime_ns))
-        return found
+    def numbers() -> list[tuple[int, ...] | None]:
+        return [status_numbers(path) for path in (folder / SAVED, folder / first)]
 
     for _ in range(100):
-        before = stamps()
+        before = numbers()
         try:
             result = read()
         except InputError:
-            if stamps() == before:
+            if numbers() == before:
                 raise
         else:
-            if stamps() == before:
+            if numbers() == before:
                 return result
     raise InputError(f"{folder}: tables must stay while they are opened, but a program saves them; try again")
 
 
 def write_together(
-    folder: Path, files: Iterable[tuple[str, Iterable[Any]]], *, others: Iterable[str], overwrite: bool
+    folder: Path, files: Iterable[tuple[str, bytes | AnyArray]], *, others: Iterable[str], overwrite: bool
 ) -> list[Path]:
-    """Write tables, bytes or arrays, to a folder, created if it does not exist; returns their paths, sorted.
+    """Write tables to a folder, created if it does not exist; returns their paths, sorted.
+
+    A table is the bytes of a file, or an array, which numpy writes by columns.
 
     Tables in `others` that are not written now are removed. All other files in the folder stay. Raises
     OutputError if a table exists and `overwrite` is false, or if the folder cannot be created, and WriteError
@@ -163,7 +172,10 @@ def write_together(
                 path = unfinished / name
                 path.parent.mkdir(exist_ok=True)
                 with open(path, "wb") as file:
-                    file.writelines(content)
+                    if isinstance(content, bytes):
+                        file.write(content)
+                    else:
+                        np.save(file, np.asfortranarray(content))
                     file.flush()
                     os.fsync(file.fileno())
                 writing.sync_folder(path.parent)

@@ -11,7 +11,6 @@ files alone.
 from __future__ import annotations
 
 import os
-from contextlib import closing
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
@@ -159,10 +158,9 @@ def _backup_of(path: Path) -> Path:
     backup = free_path(path)
     if path.suffix.lower() in STORE_SUFFIXES:
         # SQLite is loaded for stores alone. The latest changes may be beside the store, in its log.
-        from autocolor.files.store.connections import loaded
+        from autocolor.files.store.connections import store_content
 
-        with closing(loaded(path)) as store:
-            data = store.serialize()
+        data = store_content(path)
     else:
         data = path.read_bytes()
     write_atomically(backup, data, overwrite=False)

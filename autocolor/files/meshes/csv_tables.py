@@ -236,8 +236,7 @@ def write_csv_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> li
         _table_bytes(mesh, NODE, NODE_COLUMNS, (nodes, *mesh.coordinates.T)),
         _table_bytes(mesh, POLYGON, POLYGON_COLUMNS, (polygons, names, *corners[:3], fourth)),
     )
-    files = [(name, [data]) for name, data in zip(CSV_FILES, tables, strict=True)]
-    return write_together(folder, files, others=(), overwrite=overwrite)
+    return write_together(folder, zip(CSV_FILES, tables, strict=True), others=(), overwrite=overwrite)
 
 
 def _table_bytes(mesh: Mesh, of: str, names: Iterable[str], columns: Iterable[AnyArray]) -> bytes:

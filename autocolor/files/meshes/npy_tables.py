@@ -32,7 +32,6 @@ and 168 MB besides the tables; without normals in the folder, opening takes 18 s
 
 from __future__ import annotations
 
-import io
 import json
 import math
 from collections.abc import Iterator, Mapping
@@ -47,7 +46,7 @@ from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
-from autocolor.files.reading import bounded_json, opened, read_bytes, shown
+from autocolor.files.reading import bounded_json, opened, read_bytes
 from autocolor.files.writing import SCALARS, read_table, read_together, table_exists, write_together
 from autocolor.immutable import read_only
 from autocolor.logs import logger_of, timed
@@ -95,67 +94,45 @@ def mapped(path: Path, name: str) -> Table:
     the file later, the system ends the process that reads it (SIGBUS): write a new file and rename it. Raises
     MissingInputError if there is no such file, InputError if it is not such a table.
     """
-    try:
-        with opened(path):
+    with opened(path):
+        try:
             rows = np.asarray(np.lib.format.open_memmap(path, mode="r", max_header_size=1024))
-        if rows.dtype.kind not in "iuf" or rows.ndim not in (1, 2):
-            raise ValueError(f"its dtype is {rows.dtype}, its shape {rows.shape}")
-    except InputError:
-        raise
-    except Exception as error:
-        # A wrong header makes numpy raise errors of many kinds.
-        raise InputError(
-            f"{name}: it must be an .npy file with a table of whole numbers or floating-point numbers, not"
-            f" another file ({printable(str(error)[:200])}); write it with numpy.save"
-        ) from None
+            if rows.dtype.kind not in "iuf" or rows.ndim not in (1, 2):
+                raise ValueError(f"its dtype is {rows.dtype}, its shape {rows.shape}")
+        except Exception as error:
+            # A wrong header makes numpy raise errors of many kinds.
+            raise InputError(
+                f"{name}: it must be an .npy file with a table of whole numbers or floating-point numbers,"
+                f" not another file ({printable(str(error)[:200])}); write it with numpy.save"
+            ) from None
     return name, rows
 
 
-# The notes: names of parts and scalars, crease angle, and whether polygons share planes.
-
-FORMATS: Final = ("autocolor npy tables 2", "autocolor npy tables 1")
-"""The formats that are read; the first is written."""
+FORMAT: Final = "autocolor npy tables 2"
 
 LARGEST_NOTES: Final = 4 << 20
 
-NO_NOTES: Final[Mapping[str, Any]] = {
-    "part_names": [],
-    "crease_angle": CREASE_ANGLE,
-    "scalars": [],
-    "planes": None,
-}
+KEYS: Final = {"format", "part_names", "crease_angle", "scalars", "planes"}
 
 
-def notes_of(data: bytes) -> Mapping[str, Any]:
-    """The notes in the bytes of `tables.json`, all keys of NO_NOTES among them. Raises InputError."""
+def notes_of(data: bytes) -> tuple[Mesh, bool | None]:
+    """The notes of `tables.json`: a mesh without nodes, and whether there are planes. Raises InputError."""
     try:
-        content = bounded_json(data, LARGEST_NOTES)
-        if not isinstance(content, dict) or content.get("format") not in FORMATS:
-            raise ValueError(f"its format must be {FORMATS[0]!r}")
-        notes = {**NO_NOTES, **content}
-        names, scalars, angle = notes["part_names"], notes["scalars"], notes["crease_angle"]
-        is_right = {
-            "format": True,
-            "part_names": isinstance(names, list)
-            and all(isinstance(name, str) and name for name in names)
-            and len({*names}) == len(names),
-            "crease_angle": type(angle) in (int, float) and 0 <= angle <= 180,
-            "scalars": isinstance(scalars, list)
-            and all(
-                isinstance(row, dict) and row.keys() == {"name", "of"} and row["of"] in (NODE, POLYGON)
-                for row in scalars
-            ),
-            "planes": notes["planes"] in (None, True, False),
-            # Older tables have these.
-            "files": True,
-            "replaces": True,
-        }
-        for key, value in content.items():
-            if not is_right.get(key):
-                raise ValueError(f"{shown(key)} must be as a conversion writes it, not {shown(str(value))}")
-    except ValueError as error:
-        raise InputError(f"{NOTES}: {str(error)[:200]}; convert the mesh again, or correct it") from None
-    return notes
+        notes = bounded_json(data, LARGEST_NOTES)
+        if not isinstance(notes, dict) or notes.get("format") != FORMAT or notes.keys() - KEYS:
+            raise ValueError(f"its format must be {FORMAT!r}, with no keys but {', '.join(sorted(KEYS))}")
+        names, planes = notes.get("part_names", []), notes.get("planes")
+        if not isinstance(names, list) or planes not in (None, True, False):
+            raise ValueError("part_names must be a list, and planes true, false or null")
+        nothing = np.zeros((0, 3)), np.zeros((0, 4), np.intp)
+        mesh = Mesh(*nothing, None, tuple(names), notes.get("crease_angle", CREASE_ANGLE))  # type: ignore[arg-type]
+        rows = notes.get("scalars", [])
+        return mesh.with_scalars(*(MeshScalar(row["name"], np.zeros(0), row["of"]) for row in rows)), planes
+    except (ValueError, LookupError, TypeError, InputError) as error:
+        raise InputError(
+            f"{NOTES}: it must be as a conversion writes it, and is not ({printable(str(error)[:200])});"
+            " convert the mesh again, or correct it"
+        ) from None
 
 
 def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -163,64 +140,59 @@ def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
     Raises InputError that names table, row and remedy.
     """
-    tables, notes = read_together(nodes.parent, NOTES, lambda: _opened(nodes, polygons))
-    angle = notes["crease_angle"] if placement.crease_angle is None else placement.crease_angle
+    tables, (notes, has_planes) = read_together(nodes.parent, NOTES, lambda: _opened(nodes, polygons))
+    angle = notes.crease_angle if placement.crease_angle is None else placement.crease_angle
     coordinates = _table(tables[NODES], (None, 3), np.float64, *WITHIN)
     corners = _table(tables[POLYGONS], (None, 4), np.intp, 0, len(coordinates) - 1)
     count = len(corners)
     # Part 0 for all polygons takes the memory of one number.
     part_numbers: Indices = np.broadcast_to(np.zeros(1, np.intp), count)
-    names = tuple(notes["part_names"])
+    names = notes.part_names
     if PARTS in tables:
         part_numbers = _table(tables[PARTS], (count,), np.intp, 0, (len(names) or MOST_PARTS) - 1)
         names = names or tuple(f"part {number}" for number in range(int(part_numbers.max(initial=0)) + 1))
     rows = {NODE: len(coordinates), POLYGON: count}
     scalars = tuple(
-        MeshScalar(row["name"], _table(tables[name], (rows[row["of"]],), np.float64), row["of"])
-        for name, row in zip(_scalar_names(notes), notes["scalars"], strict=True)
+        MeshScalar(each.name, _table(tables[file], (rows[each.of],), np.float64), each.of)
+        for file, each in zip(_scalar_files(notes), notes.scalars, strict=True)
     )
     mesh = (corners, part_numbers, names or (PART,), float(angle), scalars)
     if placement.up != "z" or placement.scale != 1:
         return MeshReport(Mesh(placed(coordinates, placement), *mesh))
-    planes: Any = ...
-    if notes["planes"] is not None:
-        planes = _planes(tables, count) if notes["planes"] else None
+    planes: Any = ... if has_planes is None else None
+    if has_planes:
+        rows_of_planes = _table(tables[PLANES], (None, 7), np.float64, *WITHIN, True)
+        plane_numbers = _table(tables[PLANE_NUMBERS], (count,), np.intp, -1, len(rows_of_planes) - 1)
+        sides = _table(tables[PLANE_SIDES], (count,), np.uint8, 0, 1).view(np.bool_)
+        columns = np.ascontiguousarray(rows_of_planes.T)
+        planes = SharedPlanes(columns[:3], columns[3:6], columns[6], plane_numbers, sides)
     normals = None
-    if NORMALS in tables and angle == notes["crease_angle"]:
+    if NORMALS in tables and angle == notes.crease_angle:
         vectors = _table(tables[NORMALS], (None, 3), np.float32, *WITHIN, True)
         numbers = _table(tables[NORMAL_NUMBERS], (count, 4), np.intp, 0, len(vectors) - 1)
         normals = NodeNormals(vectors, numbers)
     return MeshReport(Mesh.of_tables(coordinates, *mesh, normals=normals, shared_planes=planes))
 
 
-def _opened(nodes: Path, polygons: Path) -> tuple[Mapping[str, Table], Mapping[str, Any]]:
+def _opened(nodes: Path, polygons: Path) -> tuple[Mapping[str, Table], tuple[Mesh, bool | None]]:
     """The tables of the mesh by their usual names, and the notes. Raises InputError."""
-    folder, notes = nodes.parent, NO_NOTES
+    folder, notes = nodes.parent, notes_of(json.dumps({"format": FORMAT}).encode())
     if (nodes, polygons) != (folder / NODES, folder / POLYGONS):
         files = {NODES: nodes, POLYGONS: polygons}
         return {name: mapped(path, path.name) for name, path in files.items()}, notes
     if table_exists(folder, NOTES):
         notes = notes_of(read_table(folder, NOTES, partial(read_bytes, largest=LARGEST_NOTES)))
-    names = [NODES, POLYGONS, *_scalar_names(notes)]
-    names += [PLANES, PLANE_NUMBERS, PLANE_SIDES] if notes["planes"] else []
+    names = [NODES, POLYGONS, *_scalar_files(notes[0])]
+    names += [PLANES, PLANE_NUMBERS, PLANE_SIDES] if notes[1] else []
     names += [PARTS] if table_exists(folder, PARTS) else []
     # They may have been deleted, to be computed.
     names += [NORMALS, NORMAL_NUMBERS] if table_exists(folder, NORMALS) else []
     return {name: read_table(folder, name, partial(mapped, name=name)) for name in names}, notes
 
 
-def _scalar_names(notes: Mapping[str, Any]) -> list[str]:
-    """The files of the scalars in the notes."""
-    return [f"{SCALARS}/{number}.npy" for number in range(1, len(notes["scalars"]) + 1)]
-
-
-def _planes(tables: Mapping[str, Table], polygons: int) -> SharedPlanes:
-    """The planes of the files that the notes promise."""
-    planes = _table(tables[PLANES], (None, 7), np.float64, *WITHIN, True)
-    numbers = _table(tables[PLANE_NUMBERS], (polygons,), np.intp, -1, len(planes) - 1)
-    sides = _table(tables[PLANE_SIDES], (polygons,), np.uint8, 0, 1)
-    columns = np.ascontiguousarray(planes.T)
-    return SharedPlanes(columns[:3], columns[3:6], columns[6], numbers, sides.view(np.bool_))
+def _scalar_files(mesh: Mesh) -> list[str]:
+    """The files of the scalars of a mesh."""
+    return [f"{SCALARS}/{number}.npy" for number in range(1, len(mesh.scalars) + 1)]
 
 
 def _table(
@@ -273,7 +245,7 @@ def _table(
 
 OTHERS: Final = (
     *(PARTS, PLANES, PLANE_NUMBERS, PLANE_SIDES, NORMALS, NORMAL_NUMBERS),
-    *_scalar_names({"scalars": range(MOST_SCALARS)}),
+    *(f"{SCALARS}/{number}.npy" for number in range(1, MOST_SCALARS + 1)),
 )
 """The names of tables that a mesh may lack: those of an older mesh are removed."""
 
@@ -288,33 +260,25 @@ def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> li
         return write_together(folder, _files(mesh), others=OTHERS, overwrite=overwrite)
 
 
-def _files(mesh: Mesh) -> Iterator[tuple[str, list[bytes | AnyArray]]]:
+def _files(mesh: Mesh) -> Iterator[tuple[str, bytes | AnyArray]]:
     """The files of a mesh and their content; each is computed when it is written."""
     planes = mesh.shared_planes
     notes = {
-        "format": FORMATS[0],
+        "format": FORMAT,
         "part_names": mesh.part_names,
         "crease_angle": mesh.crease_angle,
         "scalars": [{"name": scalar.name, "of": scalar.of} for scalar in mesh.scalars],
         "planes": planes is not None,
     }
-    yield NODES, _content(mesh.coordinates)
-    yield POLYGONS, _content(mesh.node_numbers)
-    yield PARTS, _content(mesh.part_numbers)
-    for name, scalar in zip(_scalar_names(notes), mesh.scalars, strict=True):
-        yield name, _content(scalar.values)
+    yield NODES, mesh.coordinates
+    yield POLYGONS, mesh.node_numbers
+    yield PARTS, mesh.part_numbers
+    for name, scalar in zip(_scalar_files(mesh), mesh.scalars, strict=True):
+        yield name, scalar.values
     if planes is not None:
-        yield PLANES, _content(np.concatenate([planes.normals, planes.points, planes.distances[None]]).T)
-        yield PLANE_NUMBERS, _content(planes.plane_of_polygon)
-        yield PLANE_SIDES, _content(planes.turned.view(np.uint8))
-    yield NORMAL_NUMBERS, _content(mesh.normals.numbers)
-    yield NORMALS, _content(mesh.normals.vectors)
-    yield NOTES, [(json.dumps(notes, indent=1, allow_nan=False) + "\n").encode()]
-
-
-def _content(table: AnyArray) -> list[bytes | AnyArray]:
-    """The header and the numbers of the .npy file of a table by columns, not copied."""
-    header = io.BytesIO()
-    described = {"descr": table.dtype.str, "fortran_order": table.ndim > 1, "shape": table.shape}
-    np.lib.format.write_array_header_1_0(header, described)
-    return [header.getvalue(), np.ascontiguousarray(table.T)]
+        yield PLANES, np.concatenate([planes.normals, planes.points, planes.distances[None]]).T
+        yield PLANE_NUMBERS, planes.plane_of_polygon
+        yield PLANE_SIDES, planes.turned.view(np.uint8)
+    yield NORMAL_NUMBERS, mesh.normals.numbers
+    yield NORMALS, mesh.normals.vectors
+    yield NOTES, (json.dumps(notes, indent=1, allow_nan=False) + "\n").encode()

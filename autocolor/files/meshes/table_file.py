@@ -19,7 +19,7 @@ from autocolor.scene.mesh import Mesh
 
 SUFFIX: Final = ".tables"
 
-TABLE_FILE: Final = ArrayFileKind("table file", "write the scene again", ("autocolor tables 2",), {})
+TABLE_FILE: Final = ArrayFileKind("table file", "write the scene again", "autocolor tables 2", {})
 
 
 def table_file_bytes(mesh: Mesh) -> bytes:

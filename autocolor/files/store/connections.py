@@ -29,8 +29,8 @@ from autocolor.errors import (
     WriteError,
     reason_of,
 )
-from autocolor.files.reading import opened, read_head, refuse_irregular, require_size, status_of
-from autocolor.files.writing import write_atomically
+from autocolor.files.reading import opened, require_size, status_of
+from autocolor.files.writing import status_numbers, write_atomically
 
 BEGINS: Final = b"SQLite format 3\0"
 
@@ -45,15 +45,21 @@ SECONDS_OF_WAITING: Final = 5.0
 """Limit: how long to wait for another program that is writing."""
 
 
-def in_memory() -> sqlite3.Connection:
-    """A new store in memory. Raises UnavailableError if this Python's SQLite lacks what a store needs."""
+def in_memory(data: bytes | None = None) -> sqlite3.Connection:
+    """A store in memory, with the content of a file or empty.
+
+    Raises UnavailableError if this Python's SQLite lacks what a store needs.
+    """
     # The first version with STRICT tables.
     if sqlite3.sqlite_version_info < (3, 37) or not hasattr(sqlite3.Connection, "serialize"):
         raise UnavailableError(
             "a store must have SQLite 3.37 or later with sqlite3_serialize, and this Python has"
             f" {sqlite3.sqlite_version}; use another Python"
         )
-    return _connected("file:?mode=memory")
+    connection = _connected("file:?mode=memory")
+    if data is not None:
+        connection.deserialize(data)
+    return connection
 
 
 def _connected(uri: str) -> sqlite3.Connection:
@@ -67,27 +73,15 @@ def _connected(uri: str) -> sqlite3.Connection:
     return connection
 
 
-@contextmanager
-def closed_on_error(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
-    """The connection, which is closed if the body fails."""
-    try:
-        yield connection
-    except BaseException:
-        connection.close()
-        raise
-
-
-def copied(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """A copy of a store in memory. Raises sqlite3.Error."""
+def _content(connection: sqlite3.Connection) -> bytes:
+    """The bytes of a store. Raises sqlite3.Error."""
     data = connection.serialize()
-    with closed_on_error(in_memory()) as copy:
-        # Two bytes of the header say whether the store is in WAL mode. Nothing in memory is.
-        copy.deserialize(b"\1\1".join((data[:18], data[20:])))
-    return copy
+    # Two bytes of the header say whether the store is in WAL mode. Nothing in memory is.
+    return b"\1\1".join((data[:18], data[20:]))
 
 
-def loaded(path: Path) -> sqlite3.Connection:
-    """A copy in memory of the store at a path, with what its `-wal` holds.
+def store_content(path: Path) -> bytes:
+    """The content of the store at a path, with what its `-wal` holds.
 
     If a program was killed while it changed the store, SQLite first takes that change back, by the `-journal`
     beside it. Raises InputError, MissingInputError.
@@ -95,7 +89,7 @@ def loaded(path: Path) -> sqlite3.Connection:
     with refusals(path.name), closing(_opened(path)) as file:
         file.execute("BEGIN")
         file.execute("SELECT count(*) FROM sqlite_master").fetchone()
-        return copied(file)
+        return _content(file)
 
 
 def _opened(path: Path, is_written: bool = False) -> sqlite3.Connection:
@@ -104,30 +98,27 @@ def _opened(path: Path, is_written: bool = False) -> sqlite3.Connection:
     Raises InputError if the file is not regular, too large, or no store, or if SQLite would delete another
     file (see `files_to_play`); MissingInputError.
     """
-    status = status_of(path)
-    refuse_irregular(path, status)
-    require_size(path.name, status.st_size, GROWTH)
-    if not read_head(path).startswith(BEGINS):
-        raise InputError(
-            f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
-            " again with `autocolor convert`"
-        )
+    with opened(path) as (file, status):
+        require_size(path.name, status.st_size, GROWTH)
+        if file.read(len(BEGINS)) != BEGINS:
+            raise InputError(
+                f"{path.name}: a store must be an SQLite file, and this one does not begin as such; remove"
+                " it, or choose another file"
+            )
     # A connection that could write would move a log into the store when it is closed.
     mode = "ro" if "-wal" in files_to_play(path) and not is_written else "rw"
     return _connected(f"{Path(os.path.realpath(path)).as_uri()}?mode={mode}")
 
 
 @contextmanager
-def replacing(
-    path: Path, check: Callable[[], None]
-) -> Iterator[tuple[sqlite3.Connection, Callable[[bytes], None]]]:
-    """A copy in memory of the store at a path, and a function that replaces the store by the bytes given.
+def replacing(path: Path, check: Callable[[], None]) -> Iterator[tuple[bytes, Callable[[bytes], None]]]:
+    """The content of the store at a path, and a function that replaces it.
 
     Until the end SQLite's own lock keeps other programs from changing the store. `check` is called first
     under this lock. What a log beside the store holds is moved into the store, because SQLite would play it
-    into the next file of this name; the store then is no longer in WAL mode. After any error the copy is
-    closed. Raises InputError, MissingInputError; OutputError if the place is write-protected, and WriteError
-    if another program goes on writing, or replaces the store meanwhile.
+    into the next file of this name; the store then is no longer in WAL mode. Raises InputError,
+    MissingInputError; OutputError if the place is write-protected, and WriteError if another program goes on
+    writing, or replaces the store meanwhile.
     """
     before = status_of(path)
     if not os.access(path, os.W_OK):
@@ -135,7 +126,7 @@ def replacing(
             f"{path.name}: a store must let itself be written to be changed, and is write-protected; change"
             " its permissions, or write to another file"
         )
-    with refusals(path.name, is_written=True), closing(_opened(path, is_written=True)) as file:
+    with refusals(path.name, WriteError), closing(_opened(path, is_written=True)) as file:
         file.execute("BEGIN IMMEDIATE")
         check()
         if file.execute("PRAGMA journal_mode").fetchone() == ("wal",):
@@ -148,10 +139,10 @@ def replacing(
                 yield pair
             return
 
-        present = _numbers(path)
+        present = status_numbers(path)
 
         def save(data: bytes) -> None:
-            if _numbers(path) != present:
+            if status_numbers(path) != present:
                 raise WriteError(
                     f"{path.name}: a store must stay as it is while it is changed, and another program"
                     " replaced it; nothing was saved, so try again"
@@ -161,14 +152,7 @@ def replacing(
                 file.close()
             write_atomically(path, data, overwrite=True)
 
-        with closed_on_error(copied(file)) as copy:
-            yield copy, save
-
-
-def _numbers(path: Path) -> tuple[int, ...]:
-    """Numbers that differ after a file was changed or replaced."""
-    status = status_of(path)
-    return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
+        yield _content(file), save
 
 
 JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
@@ -198,11 +182,6 @@ def files_to_play(path: Path) -> list[str]:
     return endings
 
 
-# Limits of statements.
-
-READING_PRAGMAS: Final = ("index_list", "table_info", "table_list", "table_xinfo")
-"""The pragmas that only read, whatever their argument."""
-
 UNSAFE_FUNCTIONS: Final = {
     *("load_extension", "fts3_tokenizer", "match", "matchinfo", "snippet", "offsets", "optimize", "bm25"),
     *("highlight", "fts5", "rtreecheck", "rtreedepth", "rtreenode"),
@@ -210,7 +189,6 @@ UNSAFE_FUNCTIONS: Final = {
 """The functions that run other code, or read the inner tables of full-text and R-tree indexes, which may be
 damaged."""
 
-READS: Final = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
 CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
 
 
@@ -221,16 +199,18 @@ def authorizer(may_change: bool, changed: set[str]) -> Callable[..., int]:
     added to `changed`.
     """
 
-    def permission(
-        action: int, first: str | None, second: str | None, _: str | None, inner: str | None
-    ) -> int:
+    def permission(action: int, first: str | None, second: str | None, _: object, inner: object) -> int:
         name = str(second if action == sqlite3.SQLITE_FUNCTION else first).lower()
         if action in CHANGES:
             changed.add(name)
         is_allowed = (
-            action in READS
+            action in (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
             or (action == sqlite3.SQLITE_FUNCTION and name not in UNSAFE_FUNCTIONS)
-            or (action == sqlite3.SQLITE_PRAGMA and name in READING_PRAGMAS)
+            # These only read, whatever their argument.
+            or (
+                action == sqlite3.SQLITE_PRAGMA
+                and name in ("index_list", "table_info", "table_list", "table_xinfo")
+            )
             or (action in CHANGES and may_change and inner is None)
         )
         return sqlite3.SQLITE_OK if is_allowed else sqlite3.SQLITE_DENY
@@ -248,20 +228,13 @@ def limited(
     """
     changed: set[str] = set()
     until = time.monotonic() + seconds
-    is_late = False
-
-    def look() -> int:
-        nonlocal is_late
-        is_late = time.monotonic() > until
-        return int(is_late)
-
     connection.set_authorizer(authorizer(may_change, changed))
     # A step of SQLite's machine can be a slow function.
-    connection.set_progress_handler(look, 1000)
+    connection.set_progress_handler(lambda: time.monotonic() > until, 1000)
     try:
         yield changed
     except sqlite3.OperationalError as error:
-        if is_late:
+        if time.monotonic() > until:
             raise late from None
         if "interrupted" in str(error):
             # The user pressed Ctrl+C, which SQLite took.
@@ -272,9 +245,6 @@ def limited(
         connection.set_progress_handler(None, 0)
 
 
-# Errors of SQLite as errors of this package.
-
-DAMAGE_ERRORS: Final = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 SQL_ERRORS: Final = (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError)
 
 PROTECTED: Final = "the store and its folder must let SQLite open it, and do not ({}); copy all of its files"
@@ -295,20 +265,11 @@ def primary_code(error: BaseException) -> int:
     return getattr(error, "sqlite_errorcode", 0) & 0xFF
 
 
-def sentence_of(error: Exception) -> str:
-    """A sentence for an error of SQLite: what is wrong with the store, and what to do."""
-    sentence = SENTENCES.get(primary_code(error), DAMAGED)
-    return sentence.format(printable(reason_of(error)[:300]))
-
-
 @contextmanager
-def refusals(name: str, is_written: bool = False) -> Iterator[None]:
-    """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message.
-
-    If the store `is_written`, errors that are no damage are raised as WriteError.
-    """
+def refusals(name: str, kind: type[AutocolorError] = InputError) -> Iterator[None]:
+    """Raise errors of SQLite as another kind, with advice; `name` is the file's name in the message."""
     try:
         yield
     except SQL_ERRORS as error:
-        is_kept = is_written and primary_code(error) not in DAMAGE_ERRORS
-        raise (WriteError if is_kept else InputError)(f"{name}: {sentence_of(error)}") from None
+        sentence = SENTENCES.get(primary_code(error), DAMAGED).format(printable(reason_of(error)[:300]))
+        raise kind(f"{name}: {sentence}") from None

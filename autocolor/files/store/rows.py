@@ -27,7 +27,6 @@ from autocolor.files.store.schema import (
     POLYGONS,
     ROW_TABLES,
     VALUES,
-    RowTable,
     StoredTables,
     plain_row,
     quoted,
@@ -47,9 +46,6 @@ from autocolor.scene.surfaces import Part, Surface
 
 CORNERS: Final = ("node1", "node2", "node3", "node4")
 
-MOST_PROBLEMS: Final = 100
-"""Limit: the problems of rows that are told."""
-
 
 def report_of(
     connection: sqlite3.Connection, tables: StoredTables, name: str, surfaces: SurfaceSource
@@ -67,16 +63,27 @@ def report_of(
         rows = [plain_row(table.columns, row) for row in rows_of_table(connection, tables, table.name)]
         if table.name == "scene":
             fields.update(*({**OMITTED, **row} for row in rows))
-        elif table.name == PARTS:
+            continue
+        validated: list[Row] = []
+        for number, row in enumerate(rows):
+            try:
+                if table.row_class is Surface and isinstance(called := row.get("name"), str):
+                    validated.append(replaced(default_surface(called, number), row))
+                else:
+                    # A part without a surface gets one when the scene is made.
+                    start = {"surface": UNASSIGNED} if table.row_class is Part else {}
+                    validated.append(from_plain(table.row_class, {**start, **row}))
+            except RowError as error:
+                found = (problem.sentence for problem in error.row_problems)
+                problems.extend(f"{table.name}, row {number + 1}: {sentence}" for sentence in found)
+        if table.name == PARTS:
             parts = {str(row.get("name")): row for row in rows}
             if len(parts) < len(rows):
                 problems.append(f"{PARTS}: names must be unique, not repeated; rename one")
-            _validated(table, rows, problems)
         elif rows or not table.is_single:
-            values = _validated(table, rows, problems)
-            fields[table.name] = values[0] if table.is_single and values else values
+            fields[table.name] = validated[0] if table.is_single and validated else tuple(validated)
     if problems:
-        raise InputError(problems[:MOST_PROBLEMS])
+        raise InputError(problems[:100])
     mesh = mesh_of(connection, tables, tuple(parts))
     of_part = {name: {key: row[key] for key in row if key != "name"} for name, row in parts.items()}
     materials = {}
@@ -88,34 +95,12 @@ def report_of(
     return scene_report([MeshReport(mesh, material_of_part=materials)], parts=of_part, **fields)
 
 
-def _validated(table: RowTable, rows: list[dict[str, Any]], problems: list[str]) -> tuple[Row, ...]:
-    """The valid rows of a table. The problems of other rows are added to `problems`, with their places."""
-    validated: list[Row] = []
-    for number, row in enumerate(rows):
-        try:
-            if table.row_class is Surface and isinstance(name := row.get("name"), str):
-                validated.append(replaced(default_surface(name, number), row))
-            else:
-                # A part without a surface gets one when the scene is made.
-                start = {"surface": UNASSIGNED} if table.row_class is Part else {}
-                validated.append(from_plain(table.row_class, {**start, **row}))
-        except RowError as error:
-            found = (problem.sentence for problem in error.row_problems)
-            problems.extend(f"{table.name}, row {number + 1}: {sentence}" for sentence in found)
-    return tuple(validated)
-
-
-# The mesh.
-
-COLUMNS: Final[Mapping[str, tuple[str, ...]]] = {
-    NODES: ("node", *AXES),
-    POLYGONS: ("polygon", *CORNERS),
-    **{table: (of, "value") for of, table in VALUES.items()},
+COLUMNS: Final[Mapping[str, Mapping[str, Any]]] = {
+    NODES: {"node": int, **dict.fromkeys(AXES, float)},
+    POLYGONS: dict.fromkeys(("polygon", *CORNERS), int),
+    **{table: {of: int, "value": float} for of, table in VALUES.items()},
 }
-"""The columns of numbers of the tables of the mesh. The first one counts the rows."""
-
-REAL: Final = (*AXES, "value")
-"""The columns of numbers that need not be whole."""
+"""The columns of numbers of the tables of the mesh, and their types. The first one counts the rows."""
 
 
 def mesh_of(connection: sqlite3.Connection, tables: StoredTables, part_names: tuple[str, ...]) -> Mesh:
@@ -151,23 +136,23 @@ def _numbers_in(
     connection: sqlite3.Connection, tables: StoredTables, table: str, where: str = "", *values: str
 ) -> AnyArray:
     """The numbers of a table of the mesh, a structured array, with rising numbers of its rows."""
-    columns = COLUMNS[table]
-    missing_fourth = "node4" in columns and "node4" not in tables[table]
-    require_names(f"{table} must have the columns", columns[: -1 if missing_fourth else None], tables[table])
+    types = COLUMNS[table]
+    columns = [*types]
+    require_names(f"{table} must have the columns", columns, tables[table])
     # A triangle repeats its third node. A damaged index could have other rows than its table. The tables of
     # scalars are indexes themselves.
-    fourth = "node3" if missing_fourth else "ifnull(node4, node3)"
-    source = f"{table} {where or 'NOT INDEXED'}"
-    query = f"SELECT {', '.join(columns).replace('node4', fourth)} FROM {source} ORDER BY {columns[0]}"
+    asked = ", ".join(columns).replace("node4", "ifnull(node4, node3)")
+    query = f"SELECT {asked} FROM {table} {where or 'NOT INDEXED'} ORDER BY {columns[0]}"
 
     def refuse_wrong() -> None:
         for row in connection.execute(query, values):
-            for name, value in zip(columns, row, strict=True):
-                kind: Any = int | float
-                rule = f"a number of at most {LARGEST_COORDINATE:g} in size"
-                if name not in REAL:
-                    kind, rule = int, "a whole number"
-                if not isinstance(value, kind) or abs(value) > LARGEST_COORDINATE:
+            for (name, kind), value in zip(types.items(), row, strict=True):
+                if not isinstance(value, (int, kind)) or abs(value) > LARGEST_COORDINATE:
+                    rule = (
+                        "a whole number"
+                        if kind is int
+                        else f"a number of at most {LARGEST_COORDINATE:g} in size"
+                    )
                     given = "missing" if value is None else shown(value)
                     place = f"{table}, row {shown(row[0])}"
                     raise InputError(f"{place}: {name} must be {rule}, not {given}; correct it")
@@ -176,9 +161,8 @@ def _numbers_in(
     sql = connection.execute("SELECT sql FROM sqlite_master WHERE name = ?", (table,)).fetchone()
     if sql != (DEFINITIONS[table],):
         refuse_wrong()
-    dtype = [(name, np.float64 if name in REAL else np.int64) for name in columns]
     try:
-        numbers = np.fromiter(connection.execute(query, values), dtype)
+        numbers = np.fromiter(connection.execute(query, values), [*types.items()])
     except (ValueError, TypeError):
         raise InputError(DAMAGED.format(f"a row of {table}")) from None
     if not all((np.abs(numbers[name]) <= LARGEST_COORDINATE).all() for name in columns):
@@ -242,8 +226,6 @@ def _scalars(
                         f"{table}: scalar {shown(scalar)} is not in the mesh_scalars table; remove its values"
                     )
 
-
-# Inserting the rows of a scene.
 
 CHUNK: Final = 1 << 16
 """Rows that are converted at once. To convert all rows would take ten times the memory of the arrays."""

@@ -16,6 +16,7 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -164,23 +165,15 @@ def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> d
         inner: Any = table
         for key, below in pairwise(column.path):
             inner = inner.setdefault(key, [None] * 3 if isinstance(below, int) else {})
-        inner[column.path[-1]] = _from_sql(column.column.kind, value)
+        # An invalid value stays as it is, and is refused later.
+        if isinstance(column.column.kind, Boolean) and value in (0, 1):
+            value = bool(value)
+        elif isinstance(value, str) and value.startswith(JSON_BEGINS):
+            with suppress(ValueError, RecursionError):
+                value = json.loads(value)
+        inner[column.path[-1]] = value
     return table
 
-
-def _from_sql(kind: Kind, value: SqlValue) -> object:
-    """A value of a table as a plain value. An invalid value is returned as it is, and refused later."""
-    if isinstance(kind, Boolean) and value in (0, 1):
-        return bool(value)
-    if isinstance(value, str) and value.startswith(JSON_BEGINS):
-        try:
-            return json.loads(value)
-        except (ValueError, RecursionError):
-            return value
-    return value
-
-
-# The definitions of all tables.
 
 NODES: Final = "nodes"
 POLYGONS: Final = "polygons"
@@ -310,7 +303,7 @@ def rows_of_table(
 ) -> list[dict[str, SqlValue]]:
     """The rows of a table, by the names of its columns, in the order of NUMBER; no rows without the table.
 
-    Raises InputError for more rows than it may have, and for a value that is bytes.
+    Raises InputError for more rows than it may have.
     """
     if not (columns := tables.get(table)):
         return []
@@ -320,7 +313,4 @@ def rows_of_table(
     is_single = table == "mesh" or (table in ROW_TABLES and ROW_TABLES[table].is_single)
     if len(rows) > (most := 1 if is_single else MOST_ROWS):
         raise InputError(f"the rows of {table} must be at most {most:,}, not more; leave rows out")
-    for number, row in enumerate(rows, 1):
-        for name in (name for name, value in row.items() if isinstance(value, bytes)):
-            raise InputError(f"{table}, row {number}: {name} must be a number or text, not bytes; correct it")
     return rows

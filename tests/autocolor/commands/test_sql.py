@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import io
 import json
 import signal
 from collections.abc import Iterator
@@ -12,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from autocolor import read_scene, write_scene
 from autocolor.commands import sql as module
-from autocolor.commands.sql import lines_of, prompt, split, sql, statements_in
+from autocolor.commands.sql import lines_of, prompt, split, sql
 from autocolor.errors import AutocolorError, UsageError
 from autocolor.files.store.tables import Value, open_tables
 from tests.autocolor.commands.conftest import Run
@@ -222,7 +221,7 @@ def test_statements_are_parted_at_their_semicolons() -> None:
 
 
 def test_statements_that_are_not_text_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="statements must be text in UTF-8; save them in this encoding"):
-        statements_in(io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8"))
     path = small_store(tmp_path)
+    error = CliRunner().invoke(sql, [str(path)], input=b"SELECT 1;\nSELECT '\xff';\n").exception
+    assert str(error) == "statements must be text in UTF-8; save them in this encoding"
     assert [refusal(path, f"SELECT '{odd}'").exit_code for odd in ("\udcff", "\0")] == [2, 2]

@@ -16,7 +16,7 @@ from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_arr
 from tests.autocolor.files.refusals import refusal
 from tests.small import cube
 
-KIND = ArrayFileKind("test file", "make it again", ("test 2", "test 1"), {"rows": ("<i4", (None,))})
+KIND = ArrayFileKind("test file", "make it again", "test 2", {"rows": ("<i4", (None,))})
 ROWS = {"rows": np.arange(3)}
 
 

@@ -14,11 +14,10 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View, read_scene, render, scene_of
 from autocolor.arrays import AnyArray
 from autocolor.budget import MEMORY, allowing
-from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes import npy_tables as room
-from autocolor.files.meshes.npy_tables import FORMATS, mapped, write_npy_tables
+from autocolor.files.meshes.npy_tables import FORMAT, mapped, write_npy_tables
 from autocolor.files.meshes.repair import Placement
 from autocolor.scene.scalar import MeshScalar
 from autocolor.testing import meshes, outside_views, views
@@ -132,7 +131,7 @@ def test_parts_without_names_are_numbered_and_notes_of_a_user_name_them(tmp_path
     parts = np.array([0, 2, 2, 0, 0, 0])
     folder_of(tmp_path, nodes=cube().coordinates, polygons=cube().node_numbers, parts=parts)
     assert read(tmp_path).part_names == ("part 0", "part 1", "part 2")
-    notes = {"format": FORMATS[1], "part_names": ["a", "b", "c"], "crease_angle": 30, "files": None}
+    notes = {"format": FORMAT, "part_names": ["a", "b", "c"], "crease_angle": 30}
     (tmp_path / "tables.json").write_text(json.dumps(notes))
     assert (read(tmp_path).part_names, read(tmp_path).crease_angle) == (("a", "b", "c"), 30.0)
 
@@ -148,10 +147,8 @@ ROW = f"its numbers must be from 0 to {NODES - 1}, not"
     ("name", "table", "sentence"),
     [
         ("nodes", FAR, f"{WITHIN}, not [0.0, nan, 0.0] (row 7, counted from 0); correct that row"),
-        ("nodes", np.full((8, 3), 2e30, np.float32), f"{WITHIN}, not [2"),
         ("polygons", np.zeros((2, 5), int), "its shape must be (rows, 4), not (2, 5); write it again"),
         ("polygons", np.full((2, 4), NODES), f"{ROW} [{NODES}, {NODES}, {NODES}, {NODES}] (row 0"),
-        ("polygons", np.full((1, 4), 2**63 + 1, np.uint64), f"{ROW} [9223372036854775809, 92"),
         ("polygons", np.zeros((2, 4)), "its numbers must be whole, not float64; convert them"),
         ("parts", np.zeros(5, int), f"its shape must be ({POLYGONS},), not (5,); write it again"),
         ("parts", np.arange(POLYGONS) // 4 * 9, "its numbers must be from 0 to 1, not 9 (row 4"),
@@ -160,7 +157,6 @@ ROW = f"its numbers must be from 0 to {NODES - 1}, not"
         ("scalars/1", np.zeros(7), f"its shape must be ({NODES},), not (7,)"),
         ("planes", np.zeros((2, 7)), UNITS),
         ("plane_numbers", np.full(POLYGONS, 9), "its numbers must be from -1 to"),
-        ("plane_sides", np.full(POLYGONS, 9), "its numbers must be from 0 to 1, not 9"),
     ],
 )
 def test_a_bad_or_missing_table_is_refused_with_its_name_its_row_and_the_remedy(
@@ -215,11 +211,9 @@ def described(text: bytes) -> bytes:
 @pytest.mark.parametrize(
     "data",
     [
-        *(saved(np.array(value)) for value in (["a"], [1 + 2j], 3.0, [[[1.0]]])),
-        *(b"", b"\x93NUMPY\1\0\xff\xff", b"\x80\4N."),
-        *(described(HEADER.replace(b"3,", size)) for size in (b"-3,", b"1.5,", b"9" * 19 + b",")),
-        *(described(text) for text in (b"__import__('os')", b"(" * 900)),
-        saved(np.zeros((10, 3)))[:-1],
+        *(saved(np.array(value)) for value in (["a"], 3.0)),
+        *(b"", b"\x80\4N.", saved(np.zeros((10, 3)))[:-1]),
+        *(described(text) for text in (HEADER.replace(b"3,", b"9" * 19 + b","), b"(" * 900)),
     ],
     ids=repr,
 )
@@ -241,26 +235,19 @@ def test_a_sparse_table_is_refused_before_it_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "value"),
+    "wrong",
     [
-        ("more", 1),
-        ("part_names", ["a", "a"]),
-        ("part_names", [""]),
-        ("crease_angle", 181),
-        ("scalars", [{"name": "x", "of": []}]),
-        ("planes", 2),
+        *({"more": 1}, {"part_names": ["a", "a"]}, {"part_names": 2}, {"crease_angle": 181}, {"planes": 2}),
+        *({"scalars": [{"name": "x", "of": []}]}, {"scalars": 2}, {"scalars": [{}]}, {"format": "2"}),
     ],
 )
-def test_notes_that_say_something_else_are_refused(tmp_path: Path, key: str, value: object) -> None:
+def test_notes_that_say_something_else_are_refused(tmp_path: Path, wrong: dict[str, object]) -> None:
     write_npy_tables(tmp_path, WHOLE)
     notes = tmp_path / "tables.json"
-    notes.write_text(json.dumps({**json.loads(notes.read_text()), key: value}))
-    assert refusal(read, tmp_path) == (
-        f"tables.json: '{key}' must be as a conversion writes it, not {shown(str(value))}; convert the mesh"
-        " again, or correct it"
-    )
-    notes.write_text('{"format": "2"}')
-    assert refusal(read, tmp_path).endswith("convert the mesh again, or correct it")
+    notes.write_text(json.dumps({**json.loads(notes.read_text()), **wrong}))
+    sentence = refusal(read, tmp_path)
+    assert sentence.startswith("tables.json: it must be as a conversion writes it, and is not (")
+    assert sentence.endswith("); convert the mesh again, or correct it")
 
 
 def test_a_folder_may_be_converted_to_itself_and_nothing_of_the_older_mesh_is_left(tmp_path: Path) -> None:

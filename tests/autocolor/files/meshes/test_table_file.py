@@ -47,7 +47,7 @@ def test_an_empty_mesh_odd_names_and_scalars_are_kept(tmp_path: Path) -> None:
         assert np.array_equal(one.values, other.values, equal_nan=True)
 
 
-IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of, with values"
+IS_NO_SCALAR = "its header must be as autocolor wrote it, and is not ("
 
 
 @pytest.mark.parametrize(
@@ -55,13 +55,13 @@ IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of, with values"
     [
         ({"mesh_scalars": [{"name": "a", "of": "node"}]}, {}, "there must be one value a node"),
         ({"mesh_scalars": [{"name": "a"}]}, {}, IS_NO_SCALAR),
-        ({"mesh_scalars": ["a"]}, {}, f"{IS_NO_SCALAR}, not 'a'"),
+        ({"mesh_scalars": ["a"]}, {}, IS_NO_SCALAR),
         ({}, {"node_numbers": np.array([[0, 1, 2, 99]])}, "a node number must be a row of the node table"),
         ({}, {"coordinates": np.full((8, 3), np.nan)}, "coordinates must be finite"),
         ({}, {"coordinates": np.zeros((8, 2))}, "coordinates must be <f8 of shape (None, 3), not"),
         ({"part_names": ["a", "a"]}, {}, "part names must differ"),
         ({"part_names": [3]}, {}, "part names must be strings"),
-        ({"part_names": "a"}, {}, "a part number must be a row of the part table"),
+        ({"part_names": "a"}, {}, "part names must be strings"),
     ],
 )
 def test_a_table_file_of_no_mesh_is_refused(
