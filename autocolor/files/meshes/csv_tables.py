@@ -58,7 +58,7 @@ GROWTH: Final = 7
 """Measured: how many times its size a table of a million rows takes."""
 
 
-class Cells(NamedTuple):
+class ColumnCells(NamedTuple):
     """What the cells of a column must be, as the beginning of a sentence; an empty cell is NaN."""
 
     rule: str
@@ -66,17 +66,17 @@ class Cells(NamedTuple):
     may_be_empty: bool = False
 
 
-CORNER: Final = Cells("a corner must be a whole number", whole=True)
+CORNER: Final = ColumnCells("a corner must be a whole number", whole=True)
 FOURTH: Final = CORNER._replace(may_be_empty=True)
-VALUE: Final = Cells(
+VALUE: Final = ColumnCells(
     "a value must be a decimal number of at most 1e30 in size, or empty if it is missing", may_be_empty=True
 )
 NODE_COLUMNS: Final = {
-    "node": Cells("a node number must be a whole number", whole=True),
-    **dict.fromkeys("xyz", Cells(COORDINATE)),
+    "node": ColumnCells("a node number must be a whole number", whole=True),
+    **dict.fromkeys("xyz", ColumnCells(COORDINATE)),
 }
 POLYGON_COLUMNS: Final = {
-    "polygon": Cells("a polygon number must be a whole number", whole=True),
+    "polygon": ColumnCells("a polygon number must be a whole number", whole=True),
     "part": None,
     **dict.fromkeys(("node1", "node2", "node3"), CORNER),
     "node4": FOURTH,
@@ -99,7 +99,7 @@ class Table:
     has. Columns of other names are scalars. Raises InputError with the first problem of a block of rows.
     """
 
-    def __init__(self, path: Path, data: bytes, kinds: Mapping[str, Cells | None]) -> None:
+    def __init__(self, path: Path, data: bytes, kinds: Mapping[str, ColumnCells | None]) -> None:
         self.text = TextTable(data, path.name)
         _check_header(self.text, kinds)
         self.names: dict[str, int] = {}
@@ -117,7 +117,7 @@ class Table:
             name.removeprefix(SCALAR): values for name, values in self.columns.items() if name not in kinds
         }
 
-    def _converted(self, kind: Cells | None, cells: Sequence[str], rows: Sequence[int]) -> Floats:
+    def _converted(self, kind: ColumnCells | None, cells: Sequence[str], rows: Sequence[int]) -> Floats:
         """The values of some cells of a column, as float64, which has all whole numbers below 2^53."""
         if kind is None:
             names = {cell: printable_name(cell) or self.empty_name for cell in dict.fromkeys(cells)}

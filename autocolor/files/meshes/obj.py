@@ -85,9 +85,12 @@ save memory."""
 COMMENT: Final = re.compile(rb"#[^\n]*")
 INDENT: Final = re.compile(rb"^ +", re.MULTILINE)
 CONTINUED: Final = re.compile(rb"(?:[^\n]*\\\n)++[^\n]*+")
-SPACE, FEED, SLASH = b" \n/"
 
-OTHER, NODE, NORMAL, POLYGON, UNUSED = range(5)
+OTHER: Final = 0
+NODE: Final = 1
+NORMAL: Final = 2
+POLYGON: Final = 3
+UNUSED: Final = 4
 KINDS: Final = {
     **{b"": UNUSED, b"v": NODE, b"vn": NORMAL, b"f": POLYGON},
     **dict.fromkeys(
@@ -221,12 +224,14 @@ class Lines(NamedTuple):
         if b"/" not in lines:
             return numbers, np.zeros(len(numbers), np.int64), sizes
         letters = np.frombuffer(lines, np.uint8)
-        slashes = np.flatnonzero(letters == SLASH)
+        slashes = np.flatnonzero(letters == ord("/"))
         before = letters[slashes - 1]
-        is_head = letters[text.starts - 1] != SLASH
+        is_head = letters[text.starts - 1] != ord("/")
         heads = np.flatnonzero(is_head)
         lengths = np.diff(heads, append=len(text))
-        wrong = np.append(slashes[(before <= SPACE) | (before == SLASH)], text.starts[heads[lengths > 3]])
+        wrong = np.append(
+            slashes[(before <= ord(" ")) | (before == ord("/"))], text.starts[heads[lengths > 3]]
+        )
         if len(wrong):
             at = int(wrong[0])
             line = self.first_line + lines.count(b"\n", 0, at)
@@ -250,7 +255,7 @@ class Lines(NamedTuple):
     def _numbers(self, lines: bytes, kind: int) -> tuple[NumberText, Numbers]:
         """The numbers of the lines of a kind, and how many there are in each."""
         text = NumberText(lines, self.place, self.first_line)
-        ends = np.flatnonzero(np.frombuffer(lines, np.uint8) == FEED)[self.are(kind)]
+        ends = np.flatnonzero(np.frombuffer(lines, np.uint8) == ord("\n"))[self.are(kind)]
         return text, np.diff(np.searchsorted(text.starts, ends), prepend=0)
 
 
