@@ -424,10 +424,10 @@ class Studio:
         Raises OutputError if another program changed the file since the studio read or wrote it: `reopen`
         shows the change, and permits to save.
         """
-        from autocolor.files.scene_writing import write_scene_with_tables
+        from autocolor.files.scene_writing import write_scene
 
         guard = self._history.on_disk.guard
-        *_, file = write_scene_with_tables(path, self.scene, overwrite=overwrite, complete=False, guard=guard)
+        *_, file = write_scene(path, self.scene, overwrite=overwrite, guard=guard)
         self._mark_written(file)
 
     def save_session(self, folder: str | PathLike[str] = ".", name: str | None = None) -> SavedFiles:

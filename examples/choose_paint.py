@@ -41,7 +41,7 @@ def main(folder: Path = Path()) -> None:
     share = pixels / pixels.sum()
 
     paints, tables = [], []
-    for name, color in zip(COLORS.names, COLORS.colors.tolist(), strict=True):
+    for name, color in zip(COLORS.names, COLORS.colors, strict=True):
         for finish, fields in FINISHES.items():
             settings = {f"surfaces.body.{key}": value for key, value in fields.items()}
             paints.append(Variant(f"{name}, {finish}", {"surfaces.body.object_color": color, **settings}))

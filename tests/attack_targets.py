@@ -33,7 +33,7 @@ from autocolor import Mesh, Scene, Studio, Variant, read_journal, read_scene
 from autocolor.batches.outputs import Pattern
 from autocolor.commands.settings import with_settings
 from autocolor.commands.show import show_once
-from autocolor.commands.sql import lines_of, statements_in
+from autocolor.commands.sql import lines_of, split
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.settings import scene_with
 from autocolor.files.store.store_file import write_store
@@ -323,9 +323,9 @@ STATEMENTS: Final = (
 def fault_of_sql(data: bytes) -> str:
     with tables_of(scene()) as tables:
         tables.seconds = 0.5
-        for number, statement in enumerate(statements_in(io.TextIOWrapper(io.BytesIO(data), "utf-8"))):
+        for number, statement in enumerate(filter(None, split(data.decode(errors="replace")))):
             try:
-                lines = list(islice(lines_of(tables.answer(statement), (None, "json")[number % 2]), 200))
+                lines = list(islice(lines_of(*tables.answer(statement), (None, "json")[number % 2]), 200))
             except ChangeError:
                 tables.change(statement)
                 continue

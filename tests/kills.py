@@ -31,7 +31,7 @@ from autocolor.errors import AutocolorError, InputError
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.csv_tables import write_csv_tables
 from autocolor.files.meshes.npy_tables import write_npy_tables
-from autocolor.files.meshes.obj_writing import write_obj
+from autocolor.files.meshes.obj import write_obj
 from autocolor.files.picture_file import read_picture, write_picture
 from autocolor.journal.autosave import Autosave, journal_in, left_sessions
 from autocolor.journal.history import History

@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from autocolor import Scene
-from autocolor.files.conversion import OUTPUTS
 from autocolor.files.formats import Format
+from autocolor.files.opening import OUTPUTS
 from autocolor.scene.scalar import MeshScalar
 from tests.small import boxes
 

@@ -74,10 +74,10 @@ PLACES = {
     },
     ("platformdirs",): {("autocolor.files.state", True)},
     ("vtkmodules",): {
-        ("autocolor.files.meshes.foreign_vtk", True), ("autocolor.files.meshes.foreign_gltf", True),
+        ("autocolor.files.foreign.vtk", True), ("autocolor.files.foreign.gltf", True),
     },
-    ("meshio",): {("autocolor.files.meshes.foreign_meshio", True)},
-    ("lib3mf",): {("autocolor.files.meshes.foreign_3mf", True)},
+    ("meshio",): {("autocolor.files.foreign.solvers", True)},
+    ("lib3mf",): {("autocolor.files.foreign.three_mf", True)},
     ("OpenEXR",): {("autocolor.layers", False)},
     ("tomlkit",): {("autocolor.files.scene_toml.toml_edit", True)},
     # The studio names the class of its widgets for type checkers.

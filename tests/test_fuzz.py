@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from autocolor.files.foreign.reader import FOREIGN
 from autocolor.files.formats import MESH_FORMATS
-from autocolor.files.meshes.foreign import FOREIGN
 from tests.attack_targets import READERS
 from tests.attacks import Arena, main
 

@@ -115,7 +115,7 @@ def animate(
             for _ in _made(results, tell):
                 pass
             return Film(name, len(variants))
-        with refusals_of_this_package():
+        with refusals_of_this_package(name):
             loss = write_film(
                 name,
                 _colors(_made(results, tell), len(variants) if kind == ".webp" else 0),

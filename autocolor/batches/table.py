@@ -12,14 +12,15 @@ import json
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
-from numbers import Real
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from autocolor.arrays import Bytes
 from autocolor.checks import shown
@@ -27,25 +28,19 @@ from autocolor.errors import InputError, UsageError
 from autocolor.files.palette_file import read_palette
 from autocolor.files.paths import LONGEST_STEM, file_stem
 from autocolor.files.reading import bounded_json, read_bytes, text_lines
-from autocolor.files.text_table import TextTable
+from autocolor.files.text_table import TextTable, value_of_text
 from autocolor.immutable import Immutable
-from autocolor.scene.columns import Tier
-from autocolor.scene.kinds import in_digits
+from autocolor.scene.columns import REFUSED, Tier
+from autocolor.scene.kinds import Number, in_digits
 
 MOST_VARIANTS: Final = 100_000
 """Limit: variants of a batch."""
 
-MOST_KEYS: Final = 256
-"""Limit: keys of a variant."""
-
 LARGEST_TABLE: Final = 16 << 20
 """Limit: bytes of a table of variants."""
 
-MOST_JSON_VALUES: Final = 1_000_000
-"""Limit: values in a table in JSON."""
-
-LATEST: Final = 1e9
-"""Limit: a time, in size."""
+TIMES: Final = Number(at_least=-1e9, at_most=1e9)
+"""The times of variants, in any unit."""
 
 NAME: Final = "name"
 TIME: Final = "time"
@@ -75,18 +70,9 @@ class Variant(Immutable):
                 f"the settings of a variant must be values by key, not {shown(settings)}; write them as in"
                 " {'ambient': 0.2}"
             )
-        if len(settings) > MOST_KEYS:
-            raise UsageError(
-                f"a variant must have at most {MOST_KEYS} keys, not {len(settings):,}; leave keys out"
-            )
         if time is not None:
-            # A whole number may be too large for a float.
-            is_number = isinstance(time, Real) and not isinstance(time, bool)
-            if not is_number or not abs(time) <= LATEST:
-                raise UsageError(
-                    f"the time of a variant must be a number of at most {LATEST:g} in size, not"
-                    f" {shown(time)}; correct it"
-                )
+            if TIMES.validated(time, (), []) is REFUSED:
+                raise UsageError(f"the time of a variant {TIMES.rule()}, not {shown(time)}; correct it")
             vars(self)["time"] = float(time)
         # The text of a NumPy array leaves out digits and, of a long array, numbers.
         plain = {
@@ -117,68 +103,62 @@ def variants_of(rows: Rows) -> tuple[Variant, ...]:
             f"variants must be a list of tables or of Variants, not {shown(rows)}; write them as in"
             " [{'ambient': 0.1}, {'ambient': 0.2}]"
         )
-    given = islice(rows, MOST_VARIANTS + 1)
-    return _named([_row(row, f"row {number}") for number, row in enumerate(given, 1)], UsageError)
+    return _named(enumerate(rows, 1))
 
 
-class _Row(NamedTuple):
-    """A row of a table; its name is None if it has none."""
-
-    place: str
-    name: object
-    settings: Mapping[str, object]
-    time: Any
-
-
-def _row(row: object, place: str) -> _Row:
-    """The row of a Variant or of a table. Raises UsageError for anything else."""
-    if isinstance(row, Variant):
-        return _Row(place, row.name, row.settings, row.time)
-    if not isinstance(row, Mapping):
-        raise UsageError(f"{place}: a variant must be a table of values by key, not {shown(row)}")
-    settings = {key: value for key, value in row.items() if key not in (NAME, TIME)}
-    return _Row(place, row.get(NAME), settings, row.get(TIME))
-
-
-def _named(rows: Sequence[_Row], error: type[UsageError | InputError], file: str = "") -> tuple[Variant, ...]:
-    """The variants of some rows. Raises `error`, with the row, if a row is wrong or there are too many."""
-    if len(rows) > MOST_VARIANTS:
-        text = f"a table must have at most {MOST_VARIANTS:,} variants, not more; split it"
-        raise error(f"{file}: {text}" if file else text)
-    within, names = f"{file}, " if file else "", _Names()
-    for row in rows:
-        if isinstance(row.name, str):
-            other = names.places.setdefault(row.name.casefold(), row.place)
-            if other != row.place:
-                text = f"a name must be unique, not {shown(row.name)} as in {other}; rename a variant"
-                raise error(f"{within}{row.place}: {text}")
-    varying = _varying([row.settings for row in rows])
-    variants = []
-    for number, row in enumerate(rows, 1):
-        name = names.free(_label(row.settings, varying, number)) if row.name is None else row.name
+def _named(rows: Iterable[tuple[int, object]]) -> tuple[Variant, ...]:
+    """The variants of some numbered rows. Raises UsageError, with the row, if a row is wrong."""
+    given = list(islice(rows, MOST_VARIANTS + 1))
+    if len(given) > MOST_VARIANTS:
+        rule = f"a table must have at most {MOST_VARIANTS:,} variants, not more"
+        raise UsageError(f"row {given[-1][0]}: {rule}; split it")
+    variants: list[Variant] = []
+    numbers: dict[str, int] = {}
+    for number, row in given:
         try:
-            variants.append(Variant(name, row.settings, row.time))  # type: ignore[arg-type]
+            variant = _variant(row)
         except UsageError as problem:
-            raise error(f"{within}{row.place}: {problem}") from None
+            raise UsageError(f"row {number}: {problem}") from None
+        other = numbers.setdefault(variant.name.casefold(), number)
+        if other != number and variant.name != UNNAMED:
+            text = f"a name must be unique, not {shown(variant.name)} as in row {other}; rename a variant"
+            raise UsageError(f"row {number}: {text}")
+        variants.append(variant)
+    taken = dict.fromkeys(numbers.keys() - {UNNAMED}, 1)
+    varying = _varying([variant.settings for variant in variants])
+    for place, variant in enumerate(variants):
+        if variant.name == UNNAMED:
+            name = _free(_label(variant.settings, varying, place + 1), taken)
+            variants[place] = Variant(name, variant.settings, variant.time)
     return tuple(variants)
 
 
-class _Names:
-    """Names in use, in lower case, with their places."""
+UNNAMED: Final = "\0"
+"""The name of a variant until it has one."""
 
-    def __init__(self) -> None:
-        self.places: dict[str, str] = {}
-        self._numbers: dict[str, int] = {}
 
-    def free(self, name: str) -> str:
-        """The name if it is not in use, else the name with the first free number from 2: "red-2"."""
-        free = name
-        while free.casefold() in self.places:
-            number = self._numbers.get(name, 1) + 1
-            self._numbers[name] = number
-            free = f"{name[: LONGEST_STEM - 8]}-{number}"
-        self.places[free.casefold()] = ""
-        return free
+def _variant(row: object) -> Variant:
+    """The variant of a row, which may be UNNAMED. Raises UsageError."""
+    if isinstance(row, Variant):
+        return row
+    if not isinstance(row, Mapping):
+        raise UsageError(f"a variant must be a table of values by key, not {shown(row)}")
+    settings = {key: value for key, value in row.items() if key not in (NAME, TIME)}
+    name = row.get(NAME)
+    return Variant(UNNAMED if name is None else name, settings, row.get(TIME))
+
+
+def _free(name: str, taken: dict[str, int]) -> str:
+    """The name if it is not taken, else the name with the first free number from 2: "red-2".
+
+    The names that are taken are without capitals, each with the last number that was added to it.
+    """
+    free, folded = name, name.casefold()
+    while free.casefold() in taken:
+        taken[folded] += 1
+        free = f"{name[: LONGEST_STEM - 8]}-{taken[folded]}"
+    taken[free.casefold()] = 1
+    return free
 
 
 def _varying(settings: Sequence[Mapping[str, object]]) -> dict[str, int]:
@@ -186,16 +166,14 @@ def _varying(settings: Sequence[Mapping[str, object]]) -> dict[str, int]:
 
     All keys if there are none.
     """
-    firsts: dict[str, str] = {}
+    values: dict[str, set[str]] = {}
     counts: Counter[str] = Counter()
-    differing: set[str] = set()
     for row in settings:
         counts.update(row.keys())
         for key, value in row.items():
-            if firsts.setdefault(key, repr(value)) != repr(value):
-                differing.add(key)
-    varying = [key for key in firsts if key in differing or counts[key] < len(settings)]
-    return {key: place for place, key in enumerate(varying or firsts)}
+            values.setdefault(key, set()).add(repr(value))
+    varying = [key for key in values if len(values[key]) > 1 or counts[key] < len(settings)]
+    return {key: place for place, key in enumerate(varying or values)}
 
 
 def _label(settings: Mapping[str, object], varying: Mapping[str, int], number: int) -> str:
@@ -213,30 +191,21 @@ def stem_of(value: object) -> str:
     """A plain value, or its text, as a part of a file name, without the marks in LEFT_OUT.
 
     >>> stem_of("#1f3f8f"), stem_of([4.0, -6, 5]), stem_of('["#200", "#fff"]')
-    ('1f3f8f', '4,-6,5', '200,fff')
+    ('1f3f8f', '4.0,-6,5', '200,fff')
     """
     text = f"{value:.6g}" if isinstance(value, float) else text_of(value)
     return text.translate(LEFT_OUT).replace(", ", ",")
 
 
 def text_of(value: object) -> str:
-    """A plain value as text, as `--set` reads it but shorter.
+    """A plain value as text, as in a cell of a table of variants.
 
     >>> text_of(0.5), text_of(True), text_of([4.0, -6, 5]), text_of(None)
-    ('0.5', 'true', '4,-6,5', 'none')
+    ('0.5', 'true', '[4.0, -6, 5]', 'none')
     """
-    if value is None or isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, float):
-        return f"{value:.12g}"
-    if isinstance(value, Mapping):
-        return ",".join(f"{key}={text_of(inner)}" for key, inner in value.items())
-    if isinstance(value, (list, tuple)):
-        return ",".join(map(text_of, value))
-    return str(value)
-
-
-# Results.
+    if isinstance(value, (str, float)):
+        return value if isinstance(value, str) else f"{value:.12g}"
+    return "none" if value is None else json.dumps(value, default=str, skipkeys=True)
 
 
 class Result(NamedTuple):
@@ -270,18 +239,9 @@ def results_bytes(results: Sequence[Result]) -> bytes:
     writer.writerow([NAME, "path", *keys, "seconds", "problem"])
     for result in results:
         settings = result.settings
-        cells = [_cell(settings[key]) if key in settings else "" for key in keys]
+        cells = [text_of(settings[key]) if key in settings else "" for key in keys]
         writer.writerow([result.name, result.path or "", *cells, f"{result.seconds:.4f}", result.problem])
     return text.getvalue().encode("utf-8", "backslashreplace")
-
-
-def _cell(value: object) -> str:
-    """A value as a cell of a table of variants."""
-    is_nested = isinstance(value, (list, tuple, Mapping))
-    return json.dumps(value, default=repr) if is_nested else text_of(value)
-
-
-# Grids.
 
 
 def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
@@ -297,14 +257,12 @@ def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
             f"a grid must be lists of values by key, not {shown(axes)}; write it as in"
             " {'ambient': [0.1, 0.2]}"
         )
-    return products([_axis(key, values) for key, values in axes.items()])
-
-
-def _axis(key: str, values: Iterable[object]) -> tuple[Variant, ...]:
-    """The variants with each of some values for a key."""
-    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
-        raise UsageError(f"{key}: an axis must be a list of values, not {shown(values)}; write it as a list")
-    return variants_of([{key: value} for value in islice(values, MOST_VARIANTS + 1)])
+    for key, values in axes.items():
+        if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
+            raise UsageError(
+                f"{key}: an axis must be a list of values, not {shown(values)}; write it as a list"
+            )
+    return products([variants_of({key: value} for value in values) for key, values in axes.items()])
 
 
 def products(tables: Sequence[Sequence[Variant]]) -> tuple[Variant, ...]:
@@ -320,13 +278,13 @@ def products(tables: Sequence[Sequence[Variant]]) -> tuple[Variant, ...]:
         raise UsageError(f"a grid {rule}; give {'fewer values' if count else 'a value for each key'}")
     check_keys(tables)
     several = [number for number, table in enumerate(tables) if len(table) > 1] or range(len(tables))
-    names = _Names()
+    taken: dict[str, int] = {}
     variants = []
     for parts in product(*tables):
         name = "-".join(parts[number].name for number in several)[:LONGEST_STEM]
         settings = {key: value for part in parts for key, value in part.settings.items()}
         time = next((part.time for part in parts if part.time is not None), None)
-        variants.append(Variant(names.free(name), settings, time))
+        variants.append(Variant(_free(name, taken), settings, time))
     return tuple(variants)
 
 
@@ -340,16 +298,10 @@ def check_keys(tables: Iterable[Iterable[Variant]]) -> None:
         seen |= keys
 
 
-# The text of `--vary`.
-
-NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-EVENLY: Final = re.compile(rf"\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*([0-9]{{1,7}})\s*")
+EVENLY: Final = re.compile(r"([-+.0-9eE]+)\s*:\s*([-+.0-9eE]+)\s*:\s*([0-9]{1,7})")
 
 PIECE: Final = re.compile(r""""(?:[^"\\]|\\.)*"?|'[^']*'?|[\[({]|[\])}]|,|[^"'\[({\])},]+""", re.DOTALL)
 """A piece of a list of values: a text in quotes, a bracket, a comma, anything else."""
-
-LONGEST_LIST: Final = 1 << 20
-"""Limit: letters of a list of values."""
 
 
 def varied(text: str) -> tuple[Variant, ...]:
@@ -365,36 +317,29 @@ def varied(text: str) -> tuple[Variant, ...]:
     [{'view.eye': '[1,2,3]'}, {'view.eye': '[4,5,6]'}]
     """
     key, equals, values = (part.strip() for part in text.partition("="))
-    if not (key and equals and values) or key in (NAME, TIME) or len(values) > LONGEST_LIST:
+    if not (key and equals and values) or key in (NAME, TIME):
         raise UsageError(
             f"--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not {shown(text)}; write it as in"
             " surfaces.body.object_color=red,navy"
         )
-    evenly = EVENLY.fullmatch(values)
-    if evenly is None:
-        names, rows = _Names(), list[dict[str, object]]()
-        for value in _split(values, key):
-            rows += _of_palette(key, value[1:], names) if value.startswith("@") else [{key: value}]
-        return variants_of(rows)
-    start, stop, count = float(evenly[1]), float(evenly[2]), int(evenly[3])
-    if not 2 <= count <= MOST_VARIANTS or not math.isfinite(start) or not math.isfinite(stop):
-        raise UsageError(
-            f"--vary {key}: START and STOP must be finite, and COUNT 2 to {MOST_VARIANTS:,}, not"
-            f" {shown(values)}; correct it"
-        )
-    steps = count - 1
-    return variants_of(
-        [{key: float(f"{start + (stop - start) * step / steps:.12g}")} for step in range(count)]
-    )
-
-
-def _of_palette(key: str, path: str, names: _Names) -> list[dict[str, object]]:
-    """The rows with each color of a palette, by the names of the colors. Raises InputError."""
-    palette = read_palette(path.strip("\"'"))
-    rows: list[dict[str, object]] = []
-    for name, color in zip(palette.names, map(tuple, palette.colors.tolist()), strict=True):
-        rows.append({key: in_digits(color), **({NAME: names.free(name)} if name else {})})
-    return rows
+    taken, rows = dict[str, int](), list[dict[str, object]]()
+    if evenly := EVENLY.fullmatch(values):
+        start, stop, count = value_of_text(evenly[1]), value_of_text(evenly[2]), int(evenly[3])
+        is_refused = any(Number().validated(value, (), []) is REFUSED for value in (start, stop))
+        if is_refused or not 2 <= count <= MOST_VARIANTS:
+            raise UsageError(
+                f"--vary {key}: START and STOP must be finite, and COUNT 2 to {MOST_VARIANTS:,}, not"
+                f" {shown(values)}; correct it"
+            )
+        return variants_of({key: float(f"{value:.12g}")} for value in np.linspace(start, stop, count))
+    for value in _split(values, key):
+        if not value.startswith("@"):
+            rows.append({key: value})
+            continue
+        palette = read_palette(value[1:].strip("\"'"))
+        for color, name in zip(palette.colors, palette.names, strict=True):
+            rows.append({key: in_digits(color), NAME: _free(name, taken) if name else None})
+    return variants_of(rows)
 
 
 def _split(text: str, key: str) -> list[str]:
@@ -416,9 +361,6 @@ def _split(text: str, key: str) -> list[str]:
     return values
 
 
-# Tables in files.
-
-
 def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     """The variants of a table in a file: CSV with a row of keys at the top, or a JSON list of objects.
 
@@ -427,50 +369,36 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     such file, UsageError for another suffix.
     """
     source = Path(path)
-    read = READERS.get(source.suffix.lower())
-    if read is None:
+    if source.suffix.lower() not in (".csv", ".json"):
         raise UsageError(
             f"a table of variants must be a file that ends in .csv or .json, not {source.name}; rename it"
         )
-    rows = list(islice(read(read_bytes(source, LARGEST_TABLE), source.name), MOST_VARIANTS + 1))
-    if not rows:
-        raise InputError(f"{source.name}: a table must have at least one variant, not none; add a row")
-    return _named(rows, InputError, source.name)
-
-
-def _csv_rows(data: bytes, file: str) -> Iterator[_Row]:
-    """The rows of a CSV table; rows count from 1, as in a spreadsheet. Raises InputError."""
-    table = TextTable(data, file, "a table of variants")
-    if len(table.header) - table.header.count("") > MOST_KEYS + 2:
-        raise table.wrong(f"a table must have at most {MOST_KEYS} keys, not more; leave keys out")
-    for number, cells in table.records():
-        row = {key: cell for key, cell in cells.items() if cell}
-        name, time = row.pop(NAME, None), row.pop(TIME, None)
-        yield _Row(f"row {number}", name, row, None if time is None else _time(time))
-
-
-def _time(text: str) -> float | str:
-    """The number in a text. A text without a number is returned as it is, and `Variant` refuses it."""
-    return float(text) if re.fullmatch(NUMBER, text) else text
-
-
-def _json_rows(data: bytes, file: str) -> Iterator[_Row]:
-    """The rows of a JSON table. Raises InputError."""
+    data = read_bytes(source, LARGEST_TABLE)
+    rows = _csv_rows if source.suffix.lower() == ".csv" else _json_rows
     try:
-        rows = bounded_json(text_lines(data, file, "a table of variants"), MOST_JSON_VALUES)
-    except (ValueError, RecursionError) as error:
+        variants = _named(rows(data, source.name))
+    except UsageError as problem:
+        raise InputError(f"{source.name}, {problem}") from None
+    if not variants:
+        raise InputError(f"{source.name}: a table must have at least one variant, not none; add a row")
+    return variants
+
+
+def _csv_rows(data: bytes, file: str) -> Iterator[tuple[int, dict[str, object]]]:
+    """The rows of a CSV table with their numbers, as in a spreadsheet. Raises InputError."""
+    for number, cells in TextTable(data, file, "a table of variants").records():
+        row: dict[str, object] = {key: cell for key, cell in cells.items() if cell}
+        if TIME in row:
+            row[TIME] = value_of_text(cells[TIME])
+        yield number, row
+
+
+def _json_rows(data: bytes, file: str) -> Iterator[tuple[int, object]]:
+    """The rows of a JSON table, numbered from 1. Raises InputError."""
+    try:
+        rows = bounded_json(text_lines(data, file, "a table of variants"), 10 * MOST_VARIANTS)
+    except ValueError as error:
         raise InputError(f"{file}: a table must be valid JSON ({error}); correct it") from None
     if not isinstance(rows, list):
         raise InputError(f"{file}: a table in JSON must be a list of objects, not {shown(rows)}")
-    for number, row in enumerate(rows, 1):
-        try:
-            yield _row(row, f"row {number}")
-        except UsageError as problem:
-            raise InputError(f"{file}, {problem}") from None
-
-
-READERS: Final[Mapping[str, Callable[[bytes, str], Iterator[_Row]]]] = {
-    ".csv": _csv_rows,
-    ".json": _json_rows,
-}
-"""The readers of tables, by the suffix of their files."""
+    return enumerate(rows, 1)

@@ -56,9 +56,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     """
     if out in ("", "-"):
         raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")
-    from autocolor.files.conversion import left_out, output_named, output_of
-    from autocolor.files.formats import MeshFormat
-    from autocolor.files.opening import source_format
+    from autocolor.files.opening import left_out, output_named, output_of, source_format
     from autocolor.files.writing import refuse_output
 
     path = Path(out)
@@ -67,7 +65,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
         # Fail before reading if OUT cannot be written.
         refuse_output(path, overwrite=force)
     report = read(source)
-    is_bare = isinstance(source_format(Path(source.path))[1], MeshFormat)
+    is_bare = bool(source_format(Path(source.path))[1].keys)
     assert output.write is not None
     written = output.write(path, report.scene, force)
     lost = left_out(report.scene, output, is_bare=is_bare)

@@ -15,6 +15,7 @@ from autocolor.commands.scenes import set_option
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
+    from autocolor.checks import Color
     from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
@@ -145,12 +146,12 @@ def recolor(
     tell_written(output, save)
 
 
-def ramp_of_file(path: str) -> list[list[int]]:
+def ramp_of_file(path: str) -> tuple[Color, ...]:
     """The colors of a palette file. Raises InputError if their number cannot make a ramp."""
     from autocolor.files.palette_file import read_palette
     from autocolor.scene.surfaces import MOST_RAMP_COLORS
 
-    colors: list[list[int]] = read_palette(path).colors.tolist()
+    colors = read_palette(path).colors
     if not 2 <= len(colors) <= MOST_RAMP_COLORS:
         advice = "choose some of them" if len(colors) > 1 else "use --object for a single color"
         rule = f"a ramp must have 2 to {MOST_RAMP_COLORS:,} colors"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import re
 import sys
@@ -12,7 +11,8 @@ from contextlib import suppress
 from functools import partial
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TextIO
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -24,8 +24,7 @@ from ramtek_emu.command_line import SIGNALS, tell
 from ramtek_emu.errors import escaped
 
 if TYPE_CHECKING:
-    from autocolor.files.scene_report import SceneReport
-    from autocolor.files.store.tables import Answer, Tables, Value
+    from autocolor.files.store.tables import Tables, Value
 
 EXAMPLES: Final = """\b
 Examples:
@@ -64,7 +63,20 @@ def sql(
     SCENE is a store (.sqlite) or any other scene. `.schema` at the prompt shows the tables; docs/STORE.md
     describes them. A change is checked like a scene file; if it breaks a rule, nothing is changed.
     """
-    tables, report = _opened(source, write)
+    from autocolor.files.store.tables import is_store, open_tables, tables_of
+
+    # A store is never repaired, and has no report.
+    path, report = Path(source.path), None
+    if is_store(path):
+        tables = open_tables(path)
+    elif write and not (path.is_dir() or path.suffix.lower() == ".toml"):
+        raise UsageError(
+            f"--write must save to a store or to a scene's folder, not to {path}; make a scene of it with"
+            " `autocolor tables --write`"
+        )
+    else:
+        report = read(source)
+        tables = tables_of(report.scene)
     tables.seconds = seconds
     run = partial(_run, tables, source, write, form)
 
@@ -74,25 +86,13 @@ def sql(
         elif sys.stdin is not None and sys.stdin.isatty():
             prompt(tables, run)
         else:
-            for each in statements_in(sys.stdin or io.StringIO()):
+            try:
+                text = sys.stdin.read() if sys.stdin else ""
+            except UnicodeDecodeError:
+                raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
+            for each in filter(None, split(text)):
                 run(each)
     context.exit(0 if report is None else ended(report, source))
-
-
-def _opened(source: SceneSource, write: bool) -> tuple[Tables, SceneReport | None]:
-    """The tables of a scene, and the report of its reading; None for a store, which is never repaired."""
-    from autocolor.files.store.tables import is_store, open_tables, tables_of
-
-    path = Path(source.path)
-    if is_store(path):
-        return open_tables(path), None
-    if write and not (path.is_dir() or path.suffix.lower() == ".toml"):
-        advice = "take its scene out with `autocolor tables --write`"
-        if path.suffix.lower() != ".npz":
-            advice = "make a scene of it with `autocolor tables --write`, or a store with `autocolor convert`"
-        raise UsageError(f"--write must save to a store or to a scene's folder, not to {path}; {advice}")
-    report = read(source)
-    return tables_of(report.scene), report
 
 
 def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, statement: str) -> None:
@@ -100,7 +100,7 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, sta
     from autocolor.files.store.tables import ChangeError, is_store
 
     try:
-        for line in lines_of(tables.answer(statement), form):
+        for line in lines_of(*tables.answer(statement), form):
             click.echo(line)
         return
     except ChangeError:
@@ -112,67 +112,44 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, sta
         with as_usage():
             raise InputError(["nothing was changed", *error.problems]) from None
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
-    path = Path(source.path)
-    if not is_store(path):
-        from autocolor.files.scene_writing import write_scene_with_tables
+    if not is_store(Path(source.path)):
+        from autocolor.files.scene_writing import write_scene
 
-        tell_written(*map(str, write_scene_with_tables(path, tables.scene(), overwrite=True, complete=False)))
+        tell_written(*map(str, write_scene(source.path, tables.scene(), overwrite=True)))
 
-
-MEASURED: Final = 1000
-"""The number of rows that determine the widths of columns; wider cells in later rows are not aligned."""
 
 WIDEST: Final = 60
 """Limit: letters of a cell of a table; longer text is cut."""
 
 
-def lines_of(answer: Answer, form: str | None) -> Iterator[str]:
+def lines_of(columns: tuple[str, ...], rows: Iterator[tuple[Value, ...]], form: str | None) -> Iterator[str]:
     """The lines of an answer as "csv", "json" or a table. Rows are read as the lines are asked for."""
-    return {"csv": _csv, "json": _json, None: _table}[form](answer)
-
-
-def _table(answer: Answer) -> Iterator[str]:
-    """The columns and the rows, aligned, with numbers at the right."""
-    if not answer.columns:
-        return
-    rows = iter(answer.rows)
-    first = [answer.columns, *islice(rows, MEASURED)]
-    widths = [max(len(_cell(value)) for value in column) for column in zip(*first, strict=True)]
-    lines = (_line(row, widths) for row in chain(first, rows))
-    yield next(lines)
-    yield "  ".join("-" * width for width in widths)
-    yield from lines
-
-
-def _line(row: Sequence[Value], widths: Sequence[int]) -> str:
-    places = [
-        f"{_cell(value):{'>' if isinstance(value, (int, float)) else '<'}{width}}"
-        for value, width in zip(row, widths, strict=True)
-    ]
-    return "  ".join(places).rstrip()
+    if form == "csv":
+        # The writer returns what it writes.
+        writer = csv.writer(SimpleNamespace(write=str), lineterminator="")
+        yield from (writer.writerow(map(_plain, row)) for row in chain([columns], rows))
+    elif form == "json":
+        opening = "["
+        for row in rows:
+            values = dict(zip(columns, map(_plain, row), strict=True))
+            yield f"{opening}{json.dumps(values, ensure_ascii=False)}"
+            opening = ","
+        yield "[]" if opening == "[" else "]"
+    elif columns:
+        # These determine the widths of columns; wider cells in later rows are not aligned.
+        first = list(islice(rows, 1000))
+        widths = [max(len(_cell(value)) for value in column) for column in zip(columns, *first, strict=True)]
+        for row in chain([columns, tuple("-" * width for width in widths)], first, rows):
+            sides = [">" if isinstance(value, (int, float)) else "<" for value in row]
+            cells = zip(map(_cell, row), sides, widths, strict=True)
+            yield "  ".join(f"{text:{side}{width}}" for text, side, width in cells).rstrip()
 
 
 def _cell(value: Value) -> str:
+    """The text of a value in a table."""
     text = f"{len(value):,} bytes" if isinstance(value, bytes) else "NULL" if value is None else str(value)
-    return escaped(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
-
-
-def _csv(answer: Answer) -> Iterator[str]:
-    """Rows as CSV, NULL as an empty cell."""
-    for row in chain([answer.columns], answer.rows):
-        text = io.StringIO()
-        csv.writer(text, lineterminator="").writerow(map(_plain, row))
-        yield text.getvalue()
-
-
-def _json(answer: Answer) -> Iterator[str]:
-    """A list of objects, whose keys are the names of columns; a line has an object."""
-    opening = "["
-    for row in answer.rows:
-        values = dict(zip(answer.columns, map(_plain, row), strict=True))
-        yield f"{opening}{json.dumps(values, ensure_ascii=False)}"
-        opening = ","
-    yield "[]" if opening == "[" else "]"
+    text = escaped(text[: WIDEST + 1])
+    return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
 
 
 def _plain(value: Value) -> object:
@@ -185,9 +162,6 @@ def _plain(value: Value) -> object:
 
 
 GREETING: Final = "statements end with ;   .tables   .schema [TABLE]   .help   .quit, or Ctrl+D"
-
-MOST_LETTERS: Final = 1 << 24
-"""Limit: letters of all statements of a file."""
 
 _PIECES: Final = re.compile(
     r"""'[^']*(?:'|\Z)|"[^"]*(?:"|\Z)|`[^`]*(?:`|\Z)|\[[^]]*(?:]|\Z)|--[^\n]*|/\*.*?(?:\*/|\Z)|;""", re.DOTALL
@@ -240,20 +214,6 @@ def _show(words: Sequence[str], tables: Tables) -> None:
                 tell(*f"{row['sql']!s};".split("\n"), err=False)
     else:
         click.echo(GREETING, err=True)
-
-
-def statements_in(file: TextIO) -> list[str]:
-    """The statements of a file. The last statement may lack its semicolon.
-
-    Raises UsageError for text that is not in UTF-8, or too long.
-    """
-    try:
-        text = file.read(MOST_LETTERS + 1)
-    except UnicodeDecodeError:
-        raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
-    if len(text) > MOST_LETTERS:
-        raise UsageError(f"statements must have at most {MOST_LETTERS:,} letters, not more; run a part first")
-    return [statement for statement in split(text) if statement]
 
 
 def split(text: str) -> list[str]:

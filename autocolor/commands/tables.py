@@ -36,11 +36,11 @@ def tables(
     """Print a complete scene file of SCENE, with the parts, surfaces, lights and view created for it."""
     report = read(source)
     if write:
-        from autocolor.files.scene_writing import write_scene_with_tables
+        from autocolor.files.scene_writing import write_scene
 
         path = Path(source.path)
         folder = path if path.is_dir() else path.parent
-        *meshes, scene_file = write_scene_with_tables(folder, report.scene, overwrite=force)
+        *meshes, scene_file = write_scene(folder, report.scene, overwrite=force, complete=True)
         tell_written(*map(str, meshes))
         tell(f"wrote {scene_file}; to render it, name it or its folder, not the mesh")
     elif as_json:

@@ -10,18 +10,16 @@ from __future__ import annotations
 import dataclasses
 import difflib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import Any, Final
 
 from autocolor.errors import InputError
+from autocolor.files.foreign.reader import FOREIGN, read_foreign
 from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.csv_tables import CSV_FILES, read_csv_tables, write_csv_tables
-from autocolor.files.meshes.foreign import FOREIGN, read_foreign
 from autocolor.files.meshes.npy_tables import MAGIC, NODES, POLYGONS, read_npy_tables, write_npy_tables
-from autocolor.files.meshes.obj import begins_as_obj, read_obj
-from autocolor.files.meshes.obj_writing import write_obj
+from autocolor.files.meshes.obj import begins_as_obj, read_obj, write_obj
 from autocolor.files.meshes.off import begins_as_off, read_off
 from autocolor.files.meshes.ply import ply_bytes, read_ply
 from autocolor.files.meshes.ply_elements import begins_as_ply
@@ -29,7 +27,7 @@ from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
 from autocolor.files.meshes.stl import begins_as_stl, read_stl, stl_bytes
 from autocolor.files.meshes.table_file import SUFFIX, read_table_file, table_file_bytes
 from autocolor.files.reading import read_head
-from autocolor.files.writing import table_exists, write_atomically
+from autocolor.files.writing import write_atomically
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
@@ -54,25 +52,31 @@ SceneWriter = Callable[[Path, Scene, bool], list[Path]]
 It returns the files that it wrote. It raises OutputError or WriteError, and leaves no file half written."""
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class Format:
     """A file format: its name in messages, and the suffixes of its files, in lower case.
 
-    `begins` is whether a file with these first bytes may have this format; None if first bytes tell nothing.
-    A folder that has all the files `in_folder` has this format. `write` writes a file, or a folder, and is
-    None for a format that is only read; `holds` are the parts of WHOLE_SCENE that can then be read back.
+    `keys` are the keys of a `[[mesh]]` table that name its files; empty for a format of whole scenes, which
+    names its meshes itself. `read` reads a mesh from the paths of the files, in the order of the keys, and a
+    Placement; or a scene from a path and the options `outside` and `surfaces` of `read_scene`. It raises
+    InputError. Suffixes and first bytes are those of the first file: `begins` is whether a file with these
+    first bytes may have this format; None if first bytes tell nothing. A folder that has all the files
+    `in_folder` has this format.
+
+    `write` writes a file, or a folder, and is None for a format that is only read; `holds` are the parts of
+    WHOLE_SCENE that can then be read back. `prior_of_y` is how often y is up in the files of others, from -1
+    to 1 (see `meshes.up_axis`); None if the format says which axis is up.
     """
 
     name: str
     suffixes: tuple[str, ...]
-    _: KW_ONLY
+    read: Callable[..., Any]
+    keys: tuple[str, ...] = ("file",)
     begins: Callable[[bytes], object] | None = None
     in_folder: tuple[str, ...] = ()
     write: SceneWriter | None = None
-    holds: frozenset[str] = WHOLE_SCENE
-
-
-SomeFormat = TypeVar("SomeFormat", bound=Format)
+    holds: frozenset[str] = MESH_EXTRAS - {NORMALS}
+    prior_of_y: float | None = None
 
 
 def suffixes_of(formats: Iterable[Format]) -> tuple[str, ...]:
@@ -80,13 +84,12 @@ def suffixes_of(formats: Iterable[Format]) -> tuple[str, ...]:
     return tuple(sorted({suffix for each in formats for suffix in each.suffixes}))
 
 
-def format_named(path: Path, formats: Iterable[SomeFormat]) -> SomeFormat | None:
+def format_named(path: Path, formats: Iterable[Format]) -> Format | None:
     """The format with the suffix of the path; None if there is none."""
-    suffix = path.suffix.lower()
-    return next((each for each in formats if suffix in each.suffixes), None)
+    return next((each for each in formats if path.suffix.lower() in each.suffixes), None)
 
 
-def recognized(path: Path, formats: Sequence[SomeFormat]) -> SomeFormat | None:
+def recognized(path: Path, formats: Sequence[Format]) -> Format | None:
     """The format of a file: by its suffix, unless the file begins as another format does.
 
     None if no format has the suffix or begins so.
@@ -95,9 +98,9 @@ def recognized(path: Path, formats: Sequence[SomeFormat]) -> SomeFormat | None:
     if named is not None and named.begins is None:
         return named
     head = read_head(path)
-    if named is not None and (not head or (named.begins is not None and named.begins(head))):
-        return named
-    return next((each for each in formats if each.begins is not None and each.begins(head)), named)
+    # The format of the suffix comes before others that begin so, too.
+    fitting = [each for each in formats if head and each.begins is not None and each.begins(head)]
+    return named if named in fitting else next(iter(fitting), named)
 
 
 def suffix_rule(path: Path, suffixes: Sequence[str]) -> str:
@@ -107,38 +110,9 @@ def suffix_rule(path: Path, suffixes: Sequence[str]) -> str:
     "end in .npz, .obj or .toml, not in '.obk'; did you mean '.obj'?"
     """
     *others, last = suffixes
-    listed = f"{', '.join(others)} or {last}" if others else last
     given = f"not in {path.suffix!r}" if path.suffix else "and this one has no ending"
     near = difflib.get_close_matches(path.suffix.lower(), suffixes, 1, 0.75) if path.suffix else []
-    return f"end in {listed}, {given}{f'; did you mean {near[0]!r}?' if near else ''}"
-
-
-FILE: Final = ("file",)
-"""The key of a mesh in a single file."""
-
-NODES_AND_POLYGONS: Final = ("nodes", "polygons")
-"""The keys of a mesh in a node table and a polygon table."""
-
-MeshReader = Callable[..., MeshReport]
-"""A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
-format's keys, and a Placement. It raises InputError."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class MeshFormat(Format):
-    """A mesh file format.
-
-    `keys` are the keys of a `[[mesh]]` table that name its files; suffixes and first bytes are those of the
-    first file. In a folder of this format, the files `in_folder` are the files of the keys.
-
-    `prior_of_y` is how often y is up in the files of others, from -1 to 1 (see `meshes.up_axis`); None if the
-    format says which axis is up.
-    """
-
-    read: MeshReader
-    keys: tuple[str, ...] = FILE
-    prior_of_y: float | None = None
-    holds: frozenset[str] = MESH_EXTRAS - {NORMALS}
+    return f"end in {', '.join(others)} or {last}, {given}{f'; did you mean {near[0]!r}?' if near else ''}"
 
 
 def _file(content: Callable[[Mesh], bytes]) -> SceneWriter:
@@ -169,26 +143,26 @@ PRINTED: Final = -0.1
 scanners; printers build along z."""
 
 MESH_FORMATS: Final = (
-    MeshFormat(
+    Format(
         name="CSV",
         suffixes=(".csv",),
         read=read_csv_tables,
-        keys=NODES_AND_POLYGONS,
+        keys=("nodes", "polygons"),
         in_folder=CSV_FILES,
         write=_tables(write_csv_tables, CSV_FILES),
     ),
-    MeshFormat(name="Movie.BYU", suffixes=(".g", ".byu"), read=read_byu, prior_of_y=SIMULATION),
-    MeshFormat(
+    Format(name="Movie.BYU", suffixes=(".g", ".byu"), read=read_byu, prior_of_y=SIMULATION),
+    Format(
         name="npy",
         suffixes=(".npy",),
         begins=lambda head: head.startswith(MAGIC),
         read=read_npy_tables,
-        keys=NODES_AND_POLYGONS,
+        keys=("nodes", "polygons"),
         in_folder=(NODES, POLYGONS),
         write=_tables(write_npy_tables, (NODES, POLYGONS)),
         holds=MESH_EXTRAS,
     ),
-    MeshFormat(
+    Format(
         name="OBJ",
         suffixes=(".obj",),
         begins=begins_as_obj,
@@ -197,8 +171,8 @@ MESH_FORMATS: Final = (
         write=write_obj,
         holds=frozenset((PARTS, QUADS, NORMALS, SURFACES)),
     ),
-    MeshFormat(name="OFF", suffixes=(".off",), begins=begins_as_off, read=read_off, prior_of_y=SCANNED),
-    MeshFormat(
+    Format(name="OFF", suffixes=(".off",), begins=begins_as_off, read=read_off, prior_of_y=SCANNED),
+    Format(
         name="PLY",
         suffixes=(".ply",),
         begins=begins_as_ply,
@@ -206,7 +180,7 @@ MESH_FORMATS: Final = (
         prior_of_y=SCANNED,
         write=_file(ply_bytes),
     ),
-    MeshFormat(
+    Format(
         name="STL",
         suffixes=(".stl",),
         begins=begins_as_stl,
@@ -215,7 +189,7 @@ MESH_FORMATS: Final = (
         write=_file(stl_bytes),
         holds=frozenset(),
     ),
-    MeshFormat(
+    Format(
         name="tables",
         suffixes=(SUFFIX,),
         read=read_table_file,
@@ -223,7 +197,7 @@ MESH_FORMATS: Final = (
         holds=MESH_EXTRAS,
     ),
     *(
-        MeshFormat(
+        Format(
             name=each.name,
             suffixes=each.suffixes,
             begins=each.begins,
@@ -236,48 +210,26 @@ MESH_FORMATS: Final = (
 """All mesh formats. If several formats accept the first bytes of a file, the first format is used."""
 
 
-FILE_FORMATS: Final = tuple(each for each in MESH_FORMATS if each.keys == FILE)
+FILE_FORMATS: Final = tuple(each for each in MESH_FORMATS if len(each.keys) == 1)
 """The mesh formats that consist of a single file."""
 
 
-def format_of(path: Path) -> MeshFormat | None:
-    """The format of a single file, by its suffix or its first bytes; None if unknown."""
-    return recognized(path, FILE_FORMATS)
-
-
-def format_of_folder(folder: Path) -> MeshFormat | None:
-    """The format of the mesh in a folder; None if the folder has no mesh."""
-    for mesh_format in MESH_FORMATS:
-        names = mesh_format.in_folder
-        if names and all(table_exists(folder, name) for name in names):
-            return mesh_format
-    return None
-
-
-def format_of_files(files: Mapping[str, Path]) -> MeshFormat | None:
-    """The format of the files with these keys in `[[mesh]]`; None if it is unknown.
-
-    Several files are recognized by the first: by its suffix, else by its first bytes. If neither is known,
-    they are CSV tables, because CSV has no first bytes of its own.
-    """
-    first = next(iter(files.values()))
-    if tuple(files) == FILE:
-        return format_of(first)
-    several = [each for each in MESH_FORMATS if each.keys == tuple(files)]
-    return recognized(first, several) or next((each for each in several if each.begins is None), None)
-
-
 def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshReport:
-    """The mesh of some files, given by their keys in `[[mesh]]`, and what was repaired. Raises InputError."""
+    """The mesh of some files, given by their keys in `[[mesh]]`, and what was repaired. Raises InputError.
+
+    Several files are recognized by the first. If neither its suffix nor its first bytes are known, they are
+    CSV tables, because CSV has no first bytes of its own.
+    """
     path = next(iter(files.values()))
-    mesh_format = format_of_files(files)
+    formats = [each for each in MESH_FORMATS if each.keys == tuple(files)]
+    mesh_format = recognized(path, formats) or (formats[0] if len(files) > 1 else None)
     if mesh_format is None:
         raise InputError(
-            f"{path.name}: a mesh file must {suffix_rule(path, suffixes_of(FILE_FORMATS))};"
+            f"{path.name}: a mesh file must {suffix_rule(path, suffixes_of(formats))};"
             " export it as one of these"
         )
     with timed(LOG, f"read {', '.join(path.name for path in files.values())}"):
-        report = mesh_format.read(*files.values(), placement)
+        report: MeshReport = mesh_format.read(*files.values(), placement)
     named = format_named(path, MESH_FORMATS)
     if named is not None and named is not mesh_format:
         message = (
@@ -286,6 +238,4 @@ def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshRe
         )
         report = dataclasses.replace(report, repairs=(message, *report.repairs))
     LOG.info("%r", report.mesh)
-    for repair in report.repairs:
-        LOG.info("%s", repair)
     return report

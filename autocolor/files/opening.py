@@ -1,101 +1,92 @@
 """Opening a path: what it is, the scene that it gives, and which files of a folder can be opened.
 
 A path is a folder, a scene file, a store, a mesh file or a picture file; FORMATS has all of their formats. To
-add a format of scenes, write its reader and a row of FORMATS below.
+add a format of scenes, write its reader and a row of FORMATS below. A scene is written in one of OUTPUTS.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Final, NamedTuple
 
 from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError, reason_of
+from autocolor.files import formats
 from autocolor.files.formats import (
     FILE_FORMATS,
     MESH_FORMATS,
     NORMALS,
+    QUADS,
+    SCALARS,
+    SETTINGS,
+    SURFACES,
     WHOLE_SCENE,
     Format,
-    MeshFormat,
     format_named,
-    format_of_folder,
     read_mesh,
     recognized,
     suffix_rule,
     suffixes_of,
 )
+from autocolor.files.meshes.obj import beyond_materials
 from autocolor.files.meshes.repair import FILE, SCALES, UPS, Placement
 from autocolor.files.meshes.up_axis import seems_to_lie
 from autocolor.files.palette_file import GPL
-from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
+from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES, is_within
 from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import status_of
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
-from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
-from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.scene_toml.scene_meshes import SOURCES, MeshSource
+from autocolor.files.scene_writing import write_scene
+from autocolor.files.store.store_file import read_store, write_store
 from autocolor.files.writing import table_exists
+from autocolor.scene.columns import REFUSED, Kind
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
+from autocolor.scene.geometry.normals import CREASE_ANGLE
+from autocolor.scene.kinds import OneOf
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
 
 
-@dataclass(frozen=True, kw_only=True)
-class SceneFormat(Format):
-    """A file format that holds a whole scene.
-
-    `read` takes a path, and the options `outside` and `surfaces` of `read_scene`. It raises InputError.
-    """
-
-    read: Callable[..., SceneReport]
-
-
-def _read_store(path: Path, *, outside: bool, surfaces: SurfaceSource) -> SceneReport:
-    """The scene of a store, which names no other files: `outside` has no effect. Raises InputError."""
-    # SQLite is loaded for stores only.
-    from autocolor.files.store.store_file import read_store
-
-    return read_store(path, surfaces=surfaces)
-
-
 def _write_store(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    from autocolor.files.store.store_file import write_store
-
     write_store(path, scene, overwrite=overwrite)
     return [path]
 
 
-PICTURE: Final = SceneFormat(
+# A picture file and a store name no other files: `outside` has no effect. A picture file has its surfaces.
+
+PICTURE: Final = Format(
     name="picture",
     suffixes=(PICTURE_SUFFIX,),
-    begins=lambda head: head.startswith(b"PK\x03\x04"),
-    # A picture file is complete: the options have no effect.
     read=lambda path, **_: SceneReport(read_picture(path).scene),
+    keys=(),
+    begins=lambda head: head.startswith(b"PK\x03\x04"),
 )
 
-SCENE: Final = SceneFormat(
+SCENE: Final = Format(
     name="scene",
     suffixes=(".toml",),
-    in_folder=(SCENE_FILE,),
     read=read_scene_file,
-    write=lambda path, scene, overwrite: write_scene_with_tables(
-        path, scene, overwrite=overwrite, complete=False
-    ),
+    keys=(),
+    in_folder=(SCENE_FILE,),
+    write=lambda path, scene, overwrite: write_scene(path, scene, overwrite=overwrite),
+    holds=WHOLE_SCENE,
 )
 
-STORE: Final = SceneFormat(
+STORE: Final = Format(
     name="store",
     suffixes=STORE_SUFFIXES,
+    read=lambda path, *, surfaces, **_: read_store(path, surfaces=surfaces),
+    keys=(),
     begins=lambda head: head.startswith(b"SQLite format 3\0"),
-    read=_read_store,
     write=_write_store,
     holds=WHOLE_SCENE - {NORMALS},
 )
@@ -103,7 +94,7 @@ STORE: Final = SceneFormat(
 FORMATS: Final = (PICTURE, SCENE, STORE, *MESH_FORMATS)
 """All formats of scenes and meshes. If several accept the first bytes of a file, the first format is used."""
 
-FILES: Final[tuple[SceneFormat | MeshFormat, ...]] = (PICTURE, SCENE, STORE, *FILE_FORMATS)
+FILES: Final = (PICTURE, SCENE, STORE, *FILE_FORMATS)
 """The formats of scenes and meshes that consist of a single file, or whose first file names the others."""
 
 
@@ -146,38 +137,30 @@ def read_scene_with_report(
     surfaces: SurfaceSource = MATERIALS,
 ) -> SceneReport:
     """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
-    if up not in UPS:
-        raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
-    try:
-        placement = Placement(up, SCALES.accepted(scale), normals=FILE)
-    except (TypeError, ValueError, OverflowError):
-        raise UsageError(f"scale {SCALES.rule()}, not {shown(scale)}; give a factor such as 0.001") from None
-    if surfaces not in (MATERIALS, PARTS):
-        raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
+    kinds: tuple[Kind, ...] = (OneOf(UPS), SCALES, OneOf((MATERIALS, PARTS)))
+    for name, kind, value in zip(("up", "scale", "surfaces"), kinds, (up, scale, surfaces), strict=True):
+        if kind.validated(value, (), []) is REFUSED:
+            raise UsageError(f"{name} {kind.rule()}, not {shown(value)}; choose another")
     path = Path(path)
     if not table_exists(path.parent, path.name):
         status_of(path)
 
     path, source = source_format(path)
-    if isinstance(source, SceneFormat):
-        for name, is_given in (("up", up != "z"), ("scale", scale != 1)):
-            if is_given:
-                raise UsageError(
-                    f"{name} is for mesh files, not for {path}, which gives its own; leave it out"
-                )
-        report, folder, scene_file = source.read(path, outside=outside, surfaces=surfaces), path.parent, path
-    else:
+    if source.keys:
+        placement = Placement(up, float(scale), normals=FILE)
         report, scene_file = _bare_mesh(path, source, placement, surfaces), None
-        folder = path if path.is_dir() else path.parent
+    else:
+        if up != "z" or scale != 1:
+            name = "scale" if up == "z" else "up"
+            raise UsageError(f"{name} is for mesh files, not for {path}, which gives its own; leave it out")
+        report, scene_file = source.read(path, outside=outside, surfaces=surfaces), path.resolve()
     if report.mesh_files:
-        source_path = scene_file and scene_file.resolve()
-        keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, source_path))
+        folder = path if path.is_dir() else path.parent
+        SOURCES[report.scene.mesh] = MeshSource(folder.resolve(), report.mesh_files, scene_file)
     return report
 
 
-def _bare_mesh(
-    path: Path, mesh_format: MeshFormat, placement: Placement, surfaces: SurfaceSource
-) -> SceneReport:
+def _bare_mesh(path: Path, mesh_format: Format, placement: Placement, surfaces: SurfaceSource) -> SceneReport:
     """The scene of a mesh file, or of a folder of tables, with everything else created from defaults."""
     files, name = {"file": path}, path.stem
     if path.is_dir():
@@ -196,37 +179,40 @@ def is_picture(path: Path) -> bool:
     return source_format(path)[1] is PICTURE
 
 
-def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
+def format_of_folder(folder: Path, formats: Iterable[Format] = FORMATS) -> Format | None:
+    """The format of the files in a folder; None if it has no scene and no mesh."""
+    having = (each for each in formats if each.in_folder)
+    return next((each for each in having if all(table_exists(folder, name) for name in each.in_folder)), None)
+
+
+def source_format(path: Path) -> tuple[Path, Format]:
     """The path to read for a source, and its format.
 
     For a folder with a scene file, the path of the scene file is returned; for a table in the folder of a
     mesh, the path of the folder. Raises InputError if the format is unknown.
     """
     if path.is_dir():
-        if (path / SCENE_FILE).exists():
-            return path / SCENE_FILE, SCENE
-        mesh_format = format_of_folder(path)
-        if mesh_format is None:
+        found = format_of_folder(path)
+        if found is None:
             contents = [" and ".join(each.in_folder) for each in FORMATS if each.in_folder]
             raise InputError(
                 f"{path}: a scene's folder must contain a {' or '.join(contents)}, and this one does not;"
                 " name a mesh file to read it alone"
             )
-        return path, mesh_format
-    file_format = recognized(path, FILES)
-    if file_format is not None:
-        return path, file_format
-    mesh_format = format_of_folder(path.parent)
-    if mesh_format is not None and path.name in mesh_format.in_folder:
-        return path.parent, mesh_format
-    if format_named(path, MESH_FORMATS) is not None:
+        return (path / SCENE_FILE if found is SCENE else path), found
+    if found := recognized(path, FILES):
+        return path, found
+    table = format_named(path, MESH_FORMATS)
+    if table is None:
+        raise InputError(
+            f"{path}: a scene must be a folder, or {suffix_rule(path, suffixes_of(FILES))}; name one of these"
+        )
+    if path.name not in table.in_folder or format_of_folder(path.parent, [table]) is None:
         raise InputError(
             f"{path}: a mesh must have a table of nodes and a table of polygons, not one of the two;"
             f" {TWO_TABLES}"
         )
-    raise InputError(
-        f"{path}: a scene must be a folder, or {suffix_rule(path, suffixes_of(FILES))}; name one of these"
-    )
+    return path.parent, table
 
 
 TWO_TABLES: Final = (
@@ -241,13 +227,11 @@ def hinted_up(path: PathLike, mesh: Mesh) -> str:
 
     Empty if the mesh seems to stand, or if the file or its format says which axis is up.
     """
-    try:
-        _, file_format = source_format(Path(path))
-    except InputError:
-        # The file may have gone since.
-        return ""
-    prior = file_format.prior_of_y if isinstance(file_format, MeshFormat) else None
-    return "y" if prior is not None and seems_to_lie(mesh, prior) else ""
+    # The file may have gone since.
+    with suppress(InputError):
+        prior = source_format(Path(path))[1].prior_of_y
+        return "y" if prior is not None and seems_to_lie(mesh, prior) else ""
+    return ""
 
 
 # The files of a folder that can be opened. Kinds are recognized by names only, which is quick: no file is
@@ -255,7 +239,6 @@ def hinted_up(path: PathLike, mesh: Mesh) -> str:
 
 FOLDER: Final = "folder"
 MESH: Final = "mesh"
-PAINTS: Final = "paints"
 
 
 class Openable(NamedTuple):
@@ -286,29 +269,83 @@ def openables_of(folder: Path) -> list[Openable]:
 
 def kind_of(path: Path) -> str:
     """The kind of a path, as in `Openable`; empty if it cannot be opened, or does not exist."""
-    try:
-        if path.is_dir():
-            if (path / SCENE_FILE).is_file():
-                return "scene"
-            return FOLDER if format_of_folder(path) is None else MESH
-        if not path.is_file():
-            return ""
-    except OSError:
-        return ""
-    if path.suffix.lower() == GPL:
-        return PAINTS
-    file_format = format_named(path, FILES)
-    if file_format is None:
-        return ""
-    return file_format.name if isinstance(file_format, SceneFormat) else MESH
+    # Unlike the methods of Path, these functions never raise for a name that is too long.
+    is_folder, is_file = os.path.isdir(path), os.path.isfile(path)
+    if is_file and path.suffix.lower() == GPL:
+        return "paints"
+    found = format_of_folder(path) if is_folder else format_named(path, FILES) if is_file else None
+    if found is None:
+        return FOLDER if is_folder else ""
+    return MESH if found.keys else found.name
 
 
 def stays_within(path: Path, folder: Path) -> bool:
     """Whether a path, and the files to read first when it is opened, are in a folder, links resolved."""
-    real = os.path.realpath(folder)
-    read = [path]
-    if path.is_dir():
-        mesh_format = format_of_folder(path)
-        names = () if mesh_format is None else mesh_format.in_folder
-        read += [path / name for name in (SCENE_FILE, *names)]
-    return all(Path(os.path.realpath(file)).is_relative_to(real) for file in read)
+    found = format_of_folder(path)
+    names = () if found is None else found.in_folder
+    return all(is_within(folder, file) for file in (path, *(path / name for name in names)))
+
+
+# Writing a scene in another format, which may not hold all of it.
+
+OUTPUTS: Final = tuple(
+    sorted((each for each in FORMATS if each.write is not None), key=lambda each: each.name.casefold())
+)
+"""The formats that a scene can be written in, sorted by name."""
+
+
+def output_named(name: str) -> Format:
+    """The format with this name, in any capitals. Raises UsageError if no format has it."""
+    for output in OUTPUTS:
+        if name.casefold() == output.name.casefold():
+            return output
+    *names, last = [output.name for output in OUTPUTS]
+    raise UsageError(f"--to must be {', '.join(names)} or {last}, not {name!r}; choose one")
+
+
+def output_of(path: Path) -> Format:
+    """The format for a path that is written.
+
+    An existing folder keeps its format; an empty folder gets a scene. For a file or a new folder the suffix
+    decides. A path without a suffix becomes the folder of a scene. Raises UsageError for an unknown suffix.
+    """
+    # Unlike `Path.is_dir`, it never raises for a name that is too long.
+    is_folder = os.path.isdir(path)
+    output = format_of_folder(path) if is_folder else format_named(path, OUTPUTS)
+    if output is None and path.suffix and not is_folder:
+        raise UsageError(
+            f"OUT must {suffix_rule(path, suffixes_of(OUTPUTS))}; name another, without an ending for the"
+            " folder of a scene, or choose a format with --to"
+        )
+    return output or SCENE
+
+
+def left_out(scene: Scene, output: Format, *, is_bare: bool) -> list[str]:
+    """A phrase for each part of a scene that a format cannot hold: "2 scalars ('stress', 'u')".
+
+    If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
+    """
+    mesh = scene.mesh
+    quads = len(mesh.node_numbers) - mesh.triangle_count
+    angle = "" if mesh.crease_angle == CREASE_ANGLE else f"the crease angle of {mesh.crease_angle:g} degrees"
+    phrases = [
+        (formats.PARTS, _counted("part", mesh.part_names) if len(mesh.part_names) > 1 else ""),
+        (SCALARS, _counted("scalar", [each.name for each in mesh.scalars])),
+        (QUADS, f"the quads ({quads:,}, each written as two triangles)" if quads else ""),
+        (NORMALS, "the file's own normals (they will be computed)" if mesh.own_normals is not None else ""),
+        (SETTINGS, angle),
+    ]
+    if not is_bare:
+        beyond = beyond_materials(scene.surfaces) if SURFACES in output.holds else []
+        phrases += [
+            (SURFACES, _counted("surface", [each.name for each in scene.surfaces])),
+            (SETTINGS, f"what a material does not have of {_counted('surface', beyond)}" if beyond else ""),
+            (SETTINGS, "the lights, the views and the settings of the scene"),
+        ]
+    return [phrase for held, phrase in phrases if phrase and held not in output.holds]
+
+
+def _counted(noun: str, names: Sequence[str]) -> str:
+    """The number of things, and the first of their names; empty if there are none."""
+    listed = ", ".join(map(shown, names[:5])) + (f" and {len(names) - 5:,} more" if names[5:] else "")
+    return f"{len(names):,} {noun}{'s' if names[1:] else ''} ({listed})" if names else ""

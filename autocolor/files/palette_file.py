@@ -14,8 +14,8 @@ from __future__ import annotations
 import csv
 import io
 import os
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -26,15 +26,16 @@ from autocolor.arrays import Bytes
 from autocolor.checks import Color, printable, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.formats import suffix_rule
-from autocolor.files.meshes.number_text import Problems
-from autocolor.files.reading import read_bytes, read_head, text_lines, utf_8_text
+from autocolor.files.reading import read_bytes, read_head, text_lines
 from autocolor.files.text_table import TextTable
 from autocolor.files.writing import write_atomically
-from autocolor.immutable import Immutable, read_only
 from autocolor.scene.kinds import ColorKind
 
 MOST_COLORS: Final = 4096
 """Limit: the colors of a palette. The largest lists of paints have some two thousand."""
+
+MOST_PROBLEMS: Final = 20
+"""Limit: problems reported for one palette."""
 
 LONGEST_NAME: Final = 100
 """Limit: letters of a name, which fit in two lines of a message."""
@@ -46,63 +47,46 @@ GPL: Final = ".gpl"
 CSV: Final = ".csv"
 SUFFIXES: Final = (CSV, GPL)
 
+GIMP: Final = "GIMP Palette"
+COMPONENTS: Final = ("red", "green", "blue")
 COLOR: Final = ColorKind()
 
 
-@dataclass(frozen=True, repr=False, eq=False, init=False)
-class Palette(Immutable):
-    """Colors in order, (n, 3) uint8, read-only, and their names, n texts; "" for a color without a name.
+@dataclass(frozen=True, repr=False, init=False)
+class Palette:
+    """Colors in order, red, green and blue from 0 to 255, and their names; "" for a color without a name.
 
-    Names may repeat; without `names`, no color has a name. Raises InputError unless there are 1 to 4,096
-    valid colors, and a valid name for each of them or none at all.
+    Any colors are accepted that a surface accepts, in any sequence or array. Names may repeat; without
+    `names`, no color has a name. Raises InputError unless there are 1 to 4,096 valid colors, and a valid name
+    for each of them or none at all.
     """
 
-    colors: Bytes
+    colors: tuple[Color, ...]
     names: tuple[str, ...]
 
     def __init__(self, colors: Any, names: Iterable[str] = ()) -> None:
-        try:
-            values = colors.tolist() if isinstance(colors, np.ndarray) else colors
-            values = [values] if isinstance(values, str) else list(values)
-        except TypeError:
+        colors = colors.tolist() if isinstance(colors, np.ndarray) else list(colors)
+        names = tuple(names) or ("",) * len(colors)
+        if not 1 <= len(colors) <= MOST_COLORS:
+            rule = f"a palette must have 1 to {MOST_COLORS:,} colors, not {len(colors):,}"
+            raise InputError(f"{rule}; {'choose some of them' if colors else 'add a color'}")
+        if len(names) != len(colors):
             raise InputError(
-                f"the colors of a palette must be a sequence of colors, not {shown(colors)}; give a list"
-            ) from None
-        names = ((names,) if isinstance(names, str) else tuple(names)) or ("",) * len(values)
-        if not 1 <= len(values) <= MOST_COLORS:
-            rule = f"a palette must have 1 to {MOST_COLORS:,} colors, not {len(values):,}"
-            raise InputError(f"{rule}; {'choose some of them' if values else 'add a color'}")
-        if len(names) != len(values):
-            raise InputError(
-                f"a palette must have a name for each of its {len(values):,} colors, or no names, not"
+                f"a palette must have a name for each of its {len(colors):,} colors, or no names, not"
                 f" {len(names):,}; write '' for a color without a name"
             )
-        for number, (color, name) in enumerate(zip(values, names, strict=True), start=1):
+        for number, (color, name) in enumerate(zip(colors, names, strict=True), start=1):
             if problem := _problem_of(color, name):
                 raise InputError(f"color {number} of a palette: {problem}")
-        array = np.array([COLOR.accepted(color) for color in values], np.uint8)
-        vars(self).update(colors=read_only(array), names=names)
+        vars(self).update(colors=tuple(map(COLOR.accepted, colors)), names=names)
 
     def __len__(self) -> int:
         return len(self.colors)
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Palette):
-            return NotImplemented
-        return self.names == other.names and np.array_equal(self.colors, other.colors)
-
-    def __hash__(self) -> int:
-        return hash((self.colors.tobytes(), self.names))
-
-    def color(self, number: int) -> Color:
-        """The color at a place, counted from 0."""
-        red, green, blue = self.colors[number].tolist()
-        return red, green, blue
-
     def color_named(self, name: str) -> Color | None:
         """The first color with this name, in capitals or not; None if no color has this name."""
         folded = [each.casefold() for each in self.names]
-        return self.color(folded.index(name.casefold())) if name and name.casefold() in folded else None
+        return self.colors[folded.index(name.casefold())] if name and name.casefold() in folded else None
 
 
 def _problem_of(color: Any, name: Any) -> str:
@@ -113,7 +97,7 @@ def _problem_of(color: Any, name: Any) -> str:
         return f"a color {COLOR.rule()}, not {shown(color, 40)}{COLOR.advice(color) or '; correct it'}"
     if isinstance(name, str) and len(name) <= LONGEST_NAME and name.isprintable() and name == name.strip(" "):
         return ""
-    rule = f"must be at most {LONGEST_NAME} printable characters, without spaces around them"
+    rule = f"must be at most {LONGEST_NAME} printable characters in UTF-8, without spaces around them"
     return f"a name {rule}, not {shown(name, 40)}; correct it"
 
 
@@ -125,11 +109,71 @@ def read_palette(path: str | os.PathLike[str]) -> Palette:
     path = Path(path)
     data = read_bytes(path, LARGEST)
     if path.suffix.lower() == GPL or data.startswith(GIMP.encode()):
-        return _read_gpl(data, path.name)
-    if path.suffix.lower() == CSV:
-        return _read_csv(data, path.name)
-    rule = suffix_rule(path, SUFFIXES)
-    raise InputError(f"{path.name or path}: a palette must {rule}; save it as one of these")
+        unit, place, rows = "line", path.name, _gpl_rows(data, path.name)
+    elif path.suffix.lower() == CSV:
+        table = _color_table(data, path.name)
+        unit, place, rows = "row", table.place, [*_csv_rows(table)]
+    else:
+        rule = suffix_rule(path, SUFFIXES)
+        raise InputError(f"{path.name or path}: a palette must {rule}; save it as one of these")
+    problems = [
+        f"{place}, {unit} {number}: {problem}"
+        for number, color, name in rows
+        if (problem := _problem_of(color, name))
+    ]
+    if problems:
+        raise InputError(problems[:MOST_PROBLEMS])
+    try:
+        return Palette([color for _, color, _ in rows], [name for _, _, name in rows])
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
+
+
+def _gpl_rows(data: bytes, place: str) -> list[tuple[int, Any, str]]:
+    """The lines, colors and names of a GIMP palette. Its own name and number of columns are not kept."""
+    # A name with bytes that are not UTF-8 becomes unprintable.
+    text = text_lines(data, place, "a palette").decode("utf-8", "surrogateescape")
+    first, *lines = text.split("\n")
+    if first.rstrip(" \t") != GIMP:
+        raise InputError(f"{place}, line 1: it must be {GIMP!r}, not {shown(first, 40)}; save it by GIMP")
+    rows: list[tuple[int, Any, str]] = []
+    count = 3
+    for number, line in enumerate(lines, start=2):
+        if line.startswith(("Name:", "Columns:", "Channels:")):
+            count = 4 if line.split() == ["Channels:", "RGBA"] else count
+        elif line.strip() and not line.lstrip().startswith("#"):
+            words = line.split(None, count)
+            color = _components(words[:count])
+            # A fourth component that is a number is the transparency.
+            color = color[:3] if isinstance(color[-1], int) else color
+            rows.append((number, color, "".join(words[count:]).strip()))
+    return rows
+
+
+def _color_table(data: bytes, place: str) -> TextTable:
+    """The table of a .csv file. Raises InputError unless its header has the columns of a palette."""
+    table = TextTable(data, place, "a palette")
+    if sorted({name.lower() for name in table.header} - {"", "name"}) not in (sorted(COMPONENTS), ["color"]):
+        columns = shown(", ".join(table.header), 60)
+        raise table.wrong(
+            f"the columns must be red, green, blue, or color, and perhaps name, not {columns}"
+            f" ({table.understood}); name them so"
+        )
+    return table
+
+
+def _csv_rows(table: TextTable) -> Iterator[tuple[int, Any, str]]:
+    """The rows, colors and names of a table. Raises InputError."""
+    for number, cells in table.records():
+        values = {name.lower(): cell for name, cell in cells.items()}
+        # pandas writes the whole numbers of a column with missing values with a point.
+        texts = [values.get(name, "").removesuffix(".0") for name in COMPONENTS]
+        yield number, values.get("color", _components(texts)), values.get("name", "")
+
+
+def _components(texts: Iterable[str]) -> list[int | str]:
+    """The components of a color; a text that is no whole number stays as it is."""
+    return [int(text) if text.isascii() and text.isdigit() and len(text) < 4 else text for text in texts]
 
 
 def write_palette(
@@ -154,7 +198,7 @@ def write_palette(
     elif names is not None:
         palette = Palette(palette.colors, names)
     text = io.StringIO()
-    rows = zip(palette.colors.tolist(), palette.names, strict=True)
+    rows = zip(palette.colors, palette.names, strict=True)
     if path.suffix.lower() == GPL:
         text.write(f"{GIMP}\nName: {printable(path.stem).strip() or 'palette'}\n#\n")
         for (red, green, blue), name in rows:
@@ -162,7 +206,7 @@ def write_palette(
     else:
         columns = 4 if any(palette.names) else 3
         table = csv.writer(text, lineterminator="\n")
-        table.writerow((*COMPONENTS[:3], "name")[:columns])
+        table.writerow((*COMPONENTS, "name")[:columns])
         table.writerows((*color, name)[:columns] for color, name in rows)
     write_atomically(path, text.getvalue().encode(), overwrite=overwrite)
 
@@ -175,83 +219,8 @@ def check_palette_path(path: Path) -> None:
 
 def is_palette(path: Path) -> bool:
     """Whether a file seems to be a palette. Its ending decides; for .csv, its first row decides, too."""
-    if path.suffix.lower() != CSV:
-        return path.suffix.lower() == GPL
-    head = read_head(path)
-    try:
-        return _are_columns(TextTable(head[: head.rfind(b"\n") + 1] or head, path.name).header)
-    except InputError:
-        return False
-
-
-# The GIMP palette: a line for each color. The name of the palette and its number of columns are not kept.
-
-GIMP: Final = "GIMP Palette"
-GIMP_HEADER: Final = re.compile(r"(Name|Columns|Channels):[ \t]*(.*?)[ \t]*")
-COMPONENT: Final = r"[ \t]*([0-9]{1,3})(?![0-9])"
-NAME: Final = r"(?:[ \t]+(.*))?"
-COMPONENTS: Final = ("red", "green", "blue", "alpha")
-
-
-def _read_gpl(data: bytes, place: str) -> Palette:
-    text = utf_8_text(text_lines(data, place, "a palette"), place, "a palette")
-    first, *lines = text.split("\n")
-    if first.rstrip(" \t") != GIMP:
-        raise InputError(f"{place}, line 1: it must be {GIMP!r}, not {shown(first, 40)}; save it by GIMP")
-    problems = Problems("line")
-    rows: list[tuple[int, Any, str]] = []
-    count = 3
-    for number, line in enumerate(lines, start=2):
-        if not line.strip() or line.lstrip(" \t").startswith("#"):
-            continue
-        if not rows and (header := GIMP_HEADER.fullmatch(line)):
-            count = 4 if header.groups() == ("Channels", "RGBA") else count
-        elif color := re.fullmatch(COMPONENT * count + NAME, line, re.DOTALL):
-            rows.append((number, [int(color[at]) for at in (1, 2, 3)], (color[count + 1] or "").strip(" \t")))
-        else:
-            rule = f"a color must be {', '.join(COMPONENTS[:count])} and perhaps a name"
-            problems.note(place, number, f"{rule}, not {shown(line, 40)}; correct it")
-    return _palette(problems, place, rows)
-
-
-# The table.
-
-
-def _are_columns(header: Sequence[str]) -> bool:
-    """Whether these are the names of the columns of a palette, with or without names."""
-    columns = [name.lower() for name in header if name]
-    return sorted(columns) in (["blue", "green", "red"], ["color"]) or (
-        "name" in columns and _are_columns([name for name in columns if name != "name"])
-    )
-
-
-def _read_csv(data: bytes, place: str) -> Palette:
-    table = TextTable(data, place, "a palette")
-    if not _are_columns(table.header):
-        columns = shown(", ".join(table.header), 60)
-        raise table.wrong(
-            f"the columns must be red, green, blue, or color, and perhaps name, not {columns}"
-            f" ({table.understood}); name them so"
-        )
-    rows = []
-    for row, cells in table.records():
-        values = {name.lower(): cell for name, cell in cells.items()}
-        color: Any = values.get("color")
-        if color is None:
-            # pandas writes the whole numbers of a column with missing values with a point.
-            texts = [values[name].removesuffix(".0") for name in COMPONENTS[:3]]
-            color = [int(text) if re.fullmatch("[0-9]{1,3}", text) else text for text in texts]
-        rows.append((row, color, values.get("name", "")))
-    return _palette(Problems("row"), table.place, rows)
-
-
-def _palette(problems: Problems, place: str, rows: Sequence[tuple[int, Any, str]]) -> Palette:
-    """The palette of the lines, colors and names of a file. Raises InputError with all problems."""
-    for line, color, name in rows:
-        if problem := _problem_of(color, name):
-            problems.note(place, line, problem)
-    problems.raise_any()
-    try:
-        return Palette([color for _, color, _ in rows], [name for _, _, name in rows])
-    except InputError as error:
-        raise InputError(f"{place}: {error}") from None
+    if path.suffix.lower() == GPL:
+        return True
+    with suppress(InputError):
+        return path.suffix.lower() == CSV and bool(_color_table(read_head(path), path.name).header)
+    return False

@@ -21,41 +21,26 @@ REFUSED: Final = frozenset('/\\:*?"<>|')
 
 
 def path_within(problems: list[str], folder: Path, name: str, *, outside: bool = False) -> Path | None:
-    """The path of a file that a scene file names; None if it is refused, with the reason added to `problems`.
+    """The path of a file that another file names; None if it is refused, with the reason added to `problems`.
 
-    Network addresses are refused. Unless `outside` is true, the path must be within the folder, also after
-    symbolic links are resolved.
+    Unless `outside` is true, the path must be within the folder, also after symbolic links are resolved. So
+    network addresses are refused, too.
     """
     if not name or not name.isprintable():
         problems.append(f"must be the name of a file, not {shown(name)}; correct it")
-    elif "://" in name or name.startswith("file:"):
-        problems.append(
-            f"must be the name of a file, not the address {shown(name)}; fetch it and name the file"
-        )
-    elif outside:
+        return None
+    is_relative = not (os.path.isabs(name) or PureWindowsPath(name).drive or "\\" in name or "://" in name)
+    if outside or (is_relative and ".." not in name.split("/") and is_within(folder, folder / name)):
         return folder / name
-    elif "\\" in name:
-        problems.append(f"must have / between folders, not \\ as in {shown(name)}; correct it")
-    elif os.path.isabs(name) or PureWindowsPath(name).drive or ".." in name.split("/"):
-        problems.append(
-            f"must be the name of a file in the scene's folder, not {shown(name)}; copy the file there"
-        )
-    elif not _is_within(folder, folder / name):
-        problems.append(
-            f"must be a file in the scene's folder, not a link to one outside like {shown(name)};"
-            " copy the file there"
-        )
-    else:
-        return folder / name
+    problems.append(
+        f"must be the name of a file in the scene's folder, not {shown(name)}; copy the file there"
+    )
     return None
 
 
-def _is_within(folder: Path, path: Path) -> bool:
-    try:
-        real_folder, real = os.path.realpath(folder), os.path.realpath(path)
-        return os.path.commonpath([real_folder, real]) == real_folder
-    except (OSError, ValueError):
-        return False
+def is_within(folder: Path, path: Path) -> bool:
+    """Whether a path is in a folder, or is the folder, after symbolic links are resolved."""
+    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
 
 
 def file_stem(name: str) -> str:

@@ -3,20 +3,16 @@
 The members are `header` (the scene without its mesh, as JSON in UTF-8), `relative_intensity` (lines,
 elements) float32, to be multiplied by the header's scale, `surface_number` (lines, elements) uint8,
 `part_number` (lines, elements) int32, where k means row k - 1 of the part table, and the mesh:
-`coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and
-`mesh_scalar_0` and so on, the values of its scalars, float64. If the scene shows a scalar, its values
-at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing value. If the picture is smooth, the
-header has the number `smooth`: each pixel of an image is the mean of a square of so many pixels a side.
-
-Before version 4 there were no part numbers: the picture of such a file does not know its parts. Written
-again, its part numbers are all 0. Versions 1 and 2 have no scalars, and in version 1 the reflectance and the
-paint of a surface were nested tables. `array_file` reads and writes the members.
+`coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32,
+`mesh_scalar_0` and so on, the values of its scalars, float64, and the normals of the mesh file, if they are
+used: `own_normal_0` and `own_normal_number_0`. If the scene shows a scalar, its values at the pixels are
+`scalar_0`, (lines, elements) float32; NaN is a missing value. `smooth` in the header is more than 1 if each
+pixel of an image is the mean of a square of so many pixels a side.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -27,51 +23,24 @@ from autocolor.arrays import LARGEST_SINGLE, AnyArray
 from autocolor.budget import allowing
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.array_file import (
-    KEY,
-    MESH_SCALARS,
-    NORMALS,
-    ArrayFileKind,
-    Series,
-    array_file_bytes,
-    normal_members,
-    normal_rows,
-    normals_of,
-    read_array_file,
-    scalar_members,
-    scalar_rows,
-    scalars_of,
-)
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, mesh_of, read_array_file
 from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.files.writing import Guard, check_suffix, no_guard, write_atomically
 from autocolor.lighting.picture import Picture, check_surfaces
-from autocolor.scene.columns import Problem, RowError, from_plain, to_plain
-from autocolor.scene.geometry.normals import NodeNormals
-from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalar import LimitsKind, MeshScalar
+from autocolor.scene.columns import from_plain, to_plain
+from autocolor.scene.scalar import LimitsKind
 from autocolor.scene.scene import Scene
-
-SHOWN: Final = "shown_scalars"
-"""The key of a list in the header. Its row, if any, is a table with the `limits` of the shown scalar."""
-
-MOST_PROBLEMS: Final = 20
-LONGEST_PROBLEM: Final = 400
 
 PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
-    formats=tuple(f"autocolor picture {version}" for version in (4, 3, 2, 1)),
-    keys=frozenset(("scale", "surfaces", "scene")),
-    arrays={
-        "relative_intensity": ("<f4", 2),
-        "surface_number": ("|u1", 2),
-        "part_number": ("<i4", 2),
-        "coordinates": ("<f8", 2),
-        "node_numbers": ("<i4", 2),
-        "part_numbers": ("<i4", 1),
+    format="autocolor picture 4",
+    types={
+        "relative_intensity": ("<f4", (None, None)),
+        "surface_number": ("|u1", (None, None)),
+        "part_number": ("<i4", (None, None)),
+        "scalar": ("<f4", (None, None)),
     },
-    series={KEY: MESH_SCALARS, **NORMALS, SHOWN: Series("scalar", ("<f4", 2), most=1)},
-    optional=frozenset(("smooth", "part_number")),
 )
 
 
@@ -105,12 +74,9 @@ def write_picture(
         )
     header = {
         "scale": picture.scale,
-        "surfaces": list(picture.surfaces),
         "scene": plain_scene(scene),
-        KEY: scalar_rows(scene.mesh.scalars),
-        SHOWN: [] if picture.scalar is None else [{"limits": picture.scalar_limits}],
-        **({"smooth": picture.smooth} if picture.smooth > 1 else {}),
-        **normal_rows(scene.mesh.own_normals),
+        "shown_scalars": [] if picture.scalar is None else [{"limits": picture.scalar_limits}],
+        "smooth": picture.smooth,
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
@@ -118,14 +84,9 @@ def write_picture(
         "relative_intensity": relative.reshape(picture.lines, picture.elements),
         "surface_number": picture.surface_number,
         "part_number": picture.part_number,
-        "coordinates": scene.mesh.coordinates,
-        "node_numbers": scene.mesh.node_numbers,
-        "part_numbers": scene.mesh.part_numbers,
-        **scalar_members(scene.mesh.scalars),
-        **normal_members(scene.mesh.own_normals),
         **({} if picture.scalar is None else {"scalar_0": picture.scalar}),
     }
-    data = array_file_bytes(PICTURE_FILE, header, arrays)
+    data = array_file_bytes(PICTURE_FILE, scene.mesh, header, arrays)
     check()
     write_atomically(path, data, overwrite=overwrite)
 
@@ -138,100 +99,58 @@ def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> Sa
     source = Path(path)
     with allowing(limit):
         header, arrays = read_array_file(PICTURE_FILE, source)
-    try:
-        mesh = (arrays["coordinates"], arrays["node_numbers"], arrays["part_numbers"])
-        scene = scene_of_plain(header["scene"], *mesh, scalars_of(header, arrays), normals_of(arrays))
-        picture = _picture(header, scene, arrays)
-    except InputError as error:
-        raise InputError(
-            f"{source.name}: {problem[:LONGEST_PROBLEM]}; {PICTURE_FILE.advice}"
-            for problem in error.problems[:MOST_PROBLEMS]
-        ) from None
-    return SavedPicture(picture, scene)
-
-
-def _require(condition: object, sentence: str) -> None:
-    if not condition:
-        raise InputError(sentence)
+    with PICTURE_FILE.naming(source.name):
+        plain = header["scene"]
+        mesh = mesh_of(header, arrays, plain["mesh"]["part_names"], plain["mesh"]["crease_angle"])
+        scene = from_plain(Scene, {**plain, "mesh": mesh})
+        return SavedPicture(_picture(header, scene, arrays), scene)
 
 
 def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyArray]) -> Picture:
     """The picture of the rasters and the header. Raises InputError if they or the scene do not match."""
     scale, smooth = header["scale"], header.get("smooth", 1)
-    relative, numbers = arrays["relative_intensity"], arrays["surface_number"]
-    parts = arrays.get("part_number")
-    is_number = isinstance(scale, (int, float)) and not isinstance(scale, bool)
-    _require(
-        is_number and 0 < scale < LARGEST_SINGLE, f"its scale must be a number above 0, not {shown(scale)}"
-    )
-    names = [surface.name for surface in scene.surfaces]
-    _require(
-        header["surfaces"] == names, f"its surfaces must be the scene's, {names}, not {header['surfaces']!r}"
-    )
-    shapes = {array.shape for array in (relative, numbers, parts) if array is not None}
-    _require(len(shapes) == 1 and relative.size, f"its arrays must be of one shape, not {sorted(shapes)}")
+    relative, surfaces = arrays["relative_intensity"], arrays["surface_number"]
+    parts, scalar = arrays["part_number"], arrays.get("scalar_0")
+    shape = relative.shape
+    if type(scale) not in (int, float) or not 0 < scale < LARGEST_SINGLE:
+        raise InputError(f"its scale must be a number above 0, not {shown(scale)}")
+    if not relative.size or any(
+        each.shape != shape for each in (surfaces, parts, scalar) if each is not None
+    ):
+        raise InputError(f"its arrays must be of one shape, not {shape} and others")
     # Both comparisons with NaN are false.
-    _require(
-        relative.min() >= 0 and float(relative.max()) * scale <= LARGEST_SINGLE,
-        f"every intensity must be a number from 0 to {LARGEST_SINGLE:.3g}",
-    )
-    _require(
-        type(smooth) is int and smooth >= 1 and not any(size % smooth for size in numbers.shape),
-        f"smooth must be a whole number that divides its lines and elements, {numbers.shape}, not"
-        f" {shown(smooth)}",
-    )
-    if parts is not None and numbers.any() and not parts.any():
-        parts = None
-    _check_numbers(scene, numbers, parts)
-    scalar, limits = _shown_scalar(header.get(SHOWN, ()), scene, arrays)
-    return Picture.from_rasters(
-        relative, numbers, tuple(names), float(scale), scalar, limits, parts, scene.mesh.part_names, smooth
-    )
-
-
-def _check_numbers(scene: Scene, surfaces: AnyArray, parts: AnyArray | None) -> None:
-    """Raise InputError for a pixel with a part or a surface without polygons, or of two different surfaces.
-
-    Without part numbers (`parts` is None), only the surface numbers are checked.
-    """
+    if not (relative.min() >= 0 and float(relative.max()) * scale <= LARGEST_SINGLE):
+        raise InputError(f"every intensity must be a number from 0 to {LARGEST_SINGLE:.3g}")
+    if type(smooth) is not int or smooth < 1 or any(size % smooth for size in shape):
+        raise InputError(
+            f"smooth must be a whole number that divides its lines and elements, {shape}, not {shown(smooth)}"
+        )
+    # Parts without polygons, and no part, are of no surface.
     surface_of = np.zeros(1 + len(scene.parts), np.uint8)
     for part in scene.mesh.parts_in_use:
         surface_of[1 + part] = scene.surface_number_of_part[part]
-    wrong = ~np.isin(surfaces, [0, *surface_of])
-    what = "surface number must be that of a surface with polygons"
-    if parts is not None and not wrong.any():
-        what = "part number must be that of a part of the surface there"
-        wrong = (parts < 0) | (parts >= len(surface_of))
-        wrong |= (surface_of.take(parts, mode="clip") != surfaces) | ((parts > 0) & (surfaces == 0))
-        surfaces = parts
+    wrong = (parts < 0) | (parts >= len(surface_of))
+    wrong |= surface_of.take(parts, mode="clip") != surfaces
     if wrong.any():
         line, element = np.argwhere(wrong)[0].tolist()
-        raise InputError(f"a {what}, not {surfaces[line, element]} (line {line}, element {element})")
-
-
-def _shown_scalar(
-    rows: Sequence[object], scene: Scene, arrays: Mapping[str, AnyArray]
-) -> tuple[AnyArray, tuple[float, float]] | tuple[None, None]:
-    """The raster of the scalar that a picture shows, and the scalar's own range. Raises InputError."""
-    rule = "there must be a scalar at the pixels if the scene shows one, and none if it does not"
-    _require(len(rows) == (scene.scalar is not None), f"{rule}, not {len(rows)}")
-    if not rows:
-        return None, None
-    row, values, shape = rows[0], arrays["scalar_0"], arrays["surface_number"].shape
-    problems: list[Problem] = []
-    given = row["limits"] if isinstance(row, Mapping) and row.keys() == {"limits"} else row
-    limits: Any = LimitsKind().validated(given, (SHOWN, 0, "limits"), problems)
-    if problems:
-        raise RowError(problems)
-    _require(
-        values.shape == shape and not np.isinf(values).any(),
-        f"a scalar must have a finite number or NaN at each of {shape} pixels, not {values.shape} with"
-        " others",
+        raise InputError(
+            f"a part number must be that of a part of the surface there, {surfaces[line, element]}, not"
+            f" {parts[line, element]} (line {line}, element {element})"
+        )
+    try:
+        limits = [LimitsKind().accepted(row["limits"]) for row in header["shown_scalars"]]
+    except (ValueError, OverflowError):
+        raise InputError(f"shown_scalars: limits {LimitsKind().rule()}") from None
+    if not (scalar is not None) == len(limits) == (scene.scalar is not None):
+        raise InputError(
+            "there must be a scalar at the pixels if the scene shows one, and none if it does not"
+        )
+    if scalar is not None and np.isinf(scalar).any():
+        raise InputError("a scalar must have a finite number or NaN at each pixel, not infinity")
+    names, of_part = tuple(surface.name for surface in scene.surfaces), scene.mesh.part_names
+    return Picture.from_rasters(
+        relative, surfaces, names, float(scale), scalar, next(iter(limits), None), parts, of_part, smooth
     )
-    return values, limits
-
-
-# A scene, without the arrays of its mesh, as values that JSON can hold, and back.
 
 
 def plain_scene(scene: Scene) -> dict[str, Any]:
@@ -241,30 +160,3 @@ def plain_scene(scene: Scene) -> dict[str, Any]:
     """
     mesh = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
     return {"mesh": mesh, **to_plain(scene)}
-
-
-def scene_of_plain(
-    values: object,
-    coordinates: AnyArray,
-    node_numbers: AnyArray,
-    part_numbers: AnyArray,
-    scalars: tuple[MeshScalar, ...] = (),
-    own_normals: NodeNormals | None = None,
-) -> Scene:
-    """The scene of values as from `plain_scene`, of the mesh's arrays, scalars and normals.
-
-    Raises InputError.
-    """
-    if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
-        raise InputError(f"scene: it must be tables, its mesh among them, not {shown(values)}")
-    described = values["mesh"]
-    mesh = Mesh(
-        coordinates,
-        node_numbers,
-        part_numbers,
-        described.get("part_names", ()),
-        described.get("crease_angle", math.nan),
-        scalars,
-        own_normals,
-    )
-    return from_plain(Scene, {**values, "mesh": mesh})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -12,12 +13,11 @@ from io import BufferedReader
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
-from autocolor import checks
-from autocolor.budget import allowed_memory, require_memory
-from autocolor.errors import InputError, MissingInputError, reason_of
+import numpy as np
 
-LEAST_READ: Final = 1 << 20
-"""Bytes to request even if the file system reports a smaller file."""
+from autocolor import checks
+from autocolor.budget import require_memory
+from autocolor.errors import InputError, MissingInputError, reason_of
 
 HEAD: Final = 4096
 """Bytes that are enough to recognize a file format."""
@@ -31,17 +31,11 @@ def read_bytes(path: Path, largest: int) -> bytes:
     Never waits for a pipe or a device. Raises MissingInputError if the file does not exist, InputError if it
     is not a regular file, too large, or unreadable.
     """
-    with opened(path) as (file, status):
-        return _content(path.name, file, status.st_size, largest)
-
-
-def _content(name: str, file: BufferedReader, size: int, largest: int) -> bytes:
-    """The rest of an open file of `size` bytes, as `read_bytes`. Raises InputError if it is too large."""
-    # read() allocates the requested size at once, even for a small file.
-    data = file.read(min(largest, max(size, LEAST_READ)) + 1)
+    with opened(path) as (file, _):
+        data = file.read(largest + 1)
     if len(data) > largest:
         raise InputError(
-            f"{name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
+            f"{path.name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
         )
     return data.removeprefix(UTF_8_MARK)
 
@@ -60,7 +54,7 @@ def read_whole(path: Path, growth: float) -> bytes:
                 f"{path.name}: a file must not begin with {HEAD:,} zero bytes; copy or export it again"
             )
         file.seek(0)
-        return _content(path.name, file, status.st_size, int(allowed_memory() / growth))
+        return file.read(status.st_size).removeprefix(UTF_8_MARK)
 
 
 def require_size(name: str, size: int, growth: float) -> None:
@@ -77,12 +71,8 @@ def opened(path: Path) -> Iterator[tuple[BufferedReader, os.stat_result]]:
     """
     refuse_irregular(path, status_of(path))
     try:
-        # The file may have been replaced since: O_NONBLOCK keeps a pipe from blocking; fstat checks again.
-        number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        with open(number, "rb") as file:
-            status = os.fstat(number)
-            refuse_irregular(path, status)
-            yield file, status
+        with open(path, "rb") as file:
+            yield file, os.fstat(file.fileno())
     except OSError as error:
         raise unreadable(path, error) from None
 
@@ -106,11 +96,9 @@ def read_head(path: Path) -> bytes:
 
 def refuse_irregular(path: Path, status: os.stat_result) -> None:
     """Raise InputError unless the status is of a regular file."""
-    if stat.S_ISREG(status.st_mode):
-        return
-    kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
-    kind = next((name for is_kind, name in kinds if is_kind(status.st_mode)), "a device")
-    raise InputError(f"{path}: it must be a regular file, not {kind}; name a file")
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a pipe or a device"
+        raise InputError(f"{path}: it must be a regular file, not {kind}; name a file")
 
 
 def unreadable(path: Path, error: OSError) -> InputError:
@@ -123,7 +111,7 @@ def unreadable(path: Path, error: OSError) -> InputError:
 MOST_NESTED: Final = 100
 """Limit: lists and tables around a value in JSON; files of ours need eight."""
 
-TOO_DEEP: Final = f"values in more than {MOST_NESTED} lists and tables"
+JSON_TEXT: Final = re.compile(rb'"(?:[^"\\]+|\\.)*"?', re.DOTALL)
 
 
 def bounded_json(data: bytes, most_values: int) -> Any:
@@ -134,20 +122,15 @@ def bounded_json(data: bytes, most_values: int) -> Any:
 
     if sum(map(data.count, (b",", b"[", b"{"))) > most_values:
         raise ValueError(f"more than {most_values:,} values")
+    marks = np.frombuffer(JSON_TEXT.sub(b"", data), np.uint8)
+    opening, closing = np.isin(marks, [*b"[{"]), np.isin(marks, [*b"]}"])
+    if np.max(np.cumsum(opening.astype(int) - closing), initial=0) > MOST_NESTED:
+        raise ValueError(f"values in more than {MOST_NESTED} lists and tables")
     try:
-        value = json.loads(data.decode("utf-8"), parse_constant=refuse)
+        return json.loads(data.decode("utf-8"), parse_constant=refuse)
     except json.JSONDecodeError as error:
         reason = error.msg.removesuffix(" at")
         raise ValueError(f"{reason} at line {error.lineno}, column {error.colno}") from None
-    except RecursionError:
-        raise ValueError(TOO_DEEP) from None
-    depth, level = 0, [value]
-    while level := [each for each in level if isinstance(each, (list, dict))]:
-        depth += 1
-        if depth > MOST_NESTED:
-            raise ValueError(TOO_DEEP)
-        level = [inner for each in level for inner in (each.values() if isinstance(each, dict) else each)]
-    return value
 
 
 def text_problem(data: bytes) -> str | None:
@@ -166,15 +149,6 @@ def text_lines(data: bytes, place: str, thing: str) -> bytes:
     if problem := text_problem(data):
         raise InputError(f"{place}: {thing} {problem}")
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in data else data
-
-
-def utf_8_text(data: bytes, place: str, thing: str) -> str:
-    """The bytes of `thing` decoded. Raises InputError with the line if they are not UTF-8."""
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{place}, line {line}: {thing} must be text in UTF-8; save it as UTF-8") from None
 
 
 def shown(value: str | bytes, most: int = 40) -> str:

@@ -16,16 +16,15 @@ import os
 from pathlib import Path
 from typing import Final
 
-from autocolor.checks import shown
-from autocolor.errors import AutocolorError, OutputError, UsageError
+from autocolor.errors import AutocolorError
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_toml.scene_text import sparse_row
-from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml, table_text
-from autocolor.files.scene_writing import refuse_names
+from autocolor.files.scene_toml.toml_edit import edited_toml
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.scene.columns import RowError, from_plain
 from autocolor.scene.rigs import Rig
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import Scene, check_scene
 
 RIG_SUFFIX: Final = ".toml"
 
@@ -47,19 +46,11 @@ def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bo
     cannot be created; WriteError if writing fails.
     """
     check_suffix(path, RIG_SUFFIX, "a rig")
-    rig = scene.rig if isinstance(scene, Scene) else scene
-    if not isinstance(rig, Rig):
-        raise UsageError(f"a rig must be of a Scene, not {shown(rig)}; give the scene with the lights")
-    refuse_names(rig.lights)
-    bounds: dict[str, object] = {"minimum": rig.minimum, "maximum": rig.maximum}
-    if not rig.lights:
-        bounds["lights"] = ()
-    tables = [table_text("[[lights]]", sparse_row(light)) for light in rig.lights]
-    data = "\n".join([table_text("", bounds), *tables]).encode()
-    if len(data) > LARGEST_TEXT:
-        raise OutputError(
-            f"{path}: a rig file must have at most {LARGEST_TEXT:,} bytes, not {len(data):,}; remove lights"
-        )
+    if not isinstance(scene, Rig):
+        check_scene(scene)
+    rig = scene if isinstance(scene, Rig) else scene.rig
+    lights = [sparse_row(light) for light in rig.lights]
+    data = edited_toml(b"", {"minimum": rig.minimum, "maximum": rig.maximum, "lights": lights}) or b""
     write_atomically(path, data, overwrite=overwrite)
 
 

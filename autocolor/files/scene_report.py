@@ -42,52 +42,14 @@ class SceneReport:
 def scene_report(
     reports: Sequence[MeshReport], *, mesh_files: tuple[Mapping[str, Any], ...] = (), **fields: Any
 ) -> SceneReport:
-    """The report for a scene of the meshes that were read; `fields` are passed to `scene_of`."""
-    mesh = Mesh.joined([report.mesh for report in reports])
-    material_of_part, materials, conflicts = _joined_materials(reports)
-    scene = scene_of(mesh, material_of_part=material_of_part, materials=tuple(materials.values()), **fields)
-    surfaces = fields.get("surfaces", ())
-    given = set() if isinstance(surfaces, str) else {surface.name for surface in surfaces}
-    names = [surface.name for surface in scene.surfaces if surface.name not in given]
-    created = []
-    if fields.get("view") is None:
-        created.append("a view was created that frames the object")
-    if fields.get("lights") is None:
-        created.append(f"{len(scene.lights)} studio lights were created")
-    if len(names) == 1:
-        created.append(f"surface {names[0]!r} was created")
-    elif names:
-        more = f" and {len(names) - 12} more" if len(names) > 12 else ""
-        created.append(f"{len(names)} surfaces were created: {', '.join(map(repr, names[:12]))}{more}")
-    if len(scene.surfaces) == MOST_SURFACES:
-        of_last = sum(part.surface == scene.surfaces[-1].name for part in scene.parts)
-        if of_last > 1:
-            created.append(
-                f"{of_last:,} parts share surface {scene.surfaces[-1].name!r}, because a scene has at most"
-                f" {MOST_SURFACES}"
-            )
-    repairs = (*(repair for report in reports for repair in report.repairs), *conflicts)
-    return SceneReport(
-        scene,
-        repairs,
-        tuple(created),
-        mesh_files,
-        fields.get("view") is None,
-        fields.get("lights") is None,
-    )
-
-
-def _joined_materials(
-    reports: Sequence[MeshReport],
-) -> tuple[dict[str, str], dict[str, Surface], tuple[str, ...]]:
-    """The materials of parts, the surfaces of materials, and a message for each conflict of several meshes.
+    """The report for a scene of the meshes that were read; `fields` are passed to `scene_of`.
 
     If two files describe a material of the same name differently, the material of the later file is renamed.
     A part that is in several meshes has the material of the first mesh that gives it a material.
     """
     material_of_part: dict[str, str] = {}
     materials: dict[str, Surface] = {}
-    conflicts = []
+    repairs = [repair for report in reports for repair in report.repairs]
     for report in reports:
         renamed = {}
         for surface in report.materials:
@@ -96,10 +58,28 @@ def _joined_materials(
                 number += 1
                 name = f"{surface.name} {number}"
             renamed[surface.name] = name
-            materials.setdefault(name, surface if name == surface.name else surface.replace(name=name))
+            materials.setdefault(name, surface.replace(name=name))
         for part, material in report.material_of_part.items():
             name = renamed.get(material, material)
             first = material_of_part.setdefault(part, name)
             if first != name:
-                conflicts.append(f"part {shown(part)} is in several meshes: it has material {shown(first)}")
-    return material_of_part, materials, tuple(conflicts)
+                repairs.append(f"part {shown(part)} is in several meshes: it has material {shown(first)}")
+    mesh = Mesh.joined([report.mesh for report in reports])
+    scene = scene_of(mesh, material_of_part=material_of_part, materials=tuple(materials.values()), **fields)
+    no_view, no_lights = fields.get("view") is None, fields.get("lights") is None
+    created = ["a view was created that frames the object"] if no_view else []
+    created += [f"{len(scene.lights)} studio lights were created"] if no_lights else []
+    surfaces = fields.get("surfaces", ())
+    given = set() if isinstance(surfaces, str) else {surface.name for surface in surfaces}
+    names = [surface.name for surface in scene.surfaces if surface.name not in given]
+    if len(names) == 1:
+        created.append(f"surface {names[0]!r} was created")
+    elif names:
+        more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+        created.append(f"{len(names)} surfaces were created: {', '.join(map(repr, names[:12]))}{more}")
+    last = scene.surfaces[-1].name
+    sharing = sum(part.surface == last for part in scene.parts)
+    if len(scene.surfaces) == MOST_SURFACES and sharing > 1:
+        rule = f"because a scene has at most {MOST_SURFACES}"
+        created.append(f"{sharing:,} parts share surface {last!r}, {rule}")
+    return SceneReport(scene, tuple(repairs), tuple(created), mesh_files, no_view, no_lights)

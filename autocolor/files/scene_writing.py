@@ -7,9 +7,7 @@ scene file of the same object is edited, so that its comments and its order stay
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -18,33 +16,33 @@ from autocolor.errors import InputError, OutputError, UsageError
 from autocolor.files.formats import MESH_FORMATS, suffixes_of
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.reading import read_bytes
-from autocolor.files.scene_toml.scene_file import report_of_text
 from autocolor.files.scene_toml.scene_meshes import (
+    SOURCES,
     Meshes,
     entries_of,
     meshes_there,
     reports_of,
-    source_of,
     written_mesh,
 )
-from autocolor.files.scene_toml.scene_text import (
-    edited_to,
-    scene_text,
-    sparse_entry,
-    with_document,
-)
+from autocolor.files.scene_toml.scene_text import edited_to, tables_of, with_crease_angle
+from autocolor.files.scene_toml.toml_edit import edited_toml
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import write_store
 from autocolor.files.writing import Guard, new_folder, no_guard, refuse_output, write_atomically
 from autocolor.logs import logger_of
-from autocolor.scene.columns import Row, row_label, to_plain
-from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)
 
 
-def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool = False) -> None:
+def write_scene(
+    path: str | os.PathLike[str],
+    scene: Scene,
+    *,
+    overwrite: bool = False,
+    complete: bool = False,
+    guard: Guard = no_guard,
+) -> list[Path]:
     """Write a scene so that `read_scene` gives it back: its tables as TOML, and its mesh.
 
     `path` is a store (.sqlite, .db; see `write_store`), a scene file (.toml), or a folder, for a `scene.toml`
@@ -53,26 +51,13 @@ def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool =
     to a new file. The scene's name is the name of its folder or file, and is written to stores alone.
 
     With `overwrite`, a scene file may exist. If it is a file of the same object, only the differences are
-    changed, and its comments, its order and its style stay. Mesh files are never overwritten.
+    changed, and its comments, its order and its style stay. Mesh files are never overwritten. If `complete`,
+    all keys are written, also those whose values are their defaults. `guard` checks the scene file or store
+    before it is overwritten.
 
-    Raises OutputError if the file exists and `overwrite` is false, or if nothing can be created there;
-    WriteError if writing fails; UsageError for a path of another kind of file. Nothing is changed then.
-    """
-    write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
-
-
-def write_scene_with_tables(
-    path: str | os.PathLike[str],
-    scene: Scene,
-    *,
-    overwrite: bool,
-    complete: bool = True,
-    guard: Guard = no_guard,
-) -> list[Path]:
-    """Like `write_scene`; returns the files that were written, the scene file last.
-
-    If `complete`, all keys are written, also those whose values are their defaults. `guard` checks the scene
-    file or store before it is overwritten.
+    Returns the files that were written, the scene file last. Raises OutputError if the file exists and
+    `overwrite` is false, or if nothing can be created there; WriteError if writing fails; UsageError for a
+    path of another kind of file. Nothing is changed then.
     """
     if Path(path).suffix.lower() in STORE_SUFFIXES and not os.path.isdir(path):
         if scene.mesh.own_normals is not None:
@@ -81,21 +66,29 @@ def write_scene_with_tables(
         return [Path(path)]
     target = _target(path)
     check_scene(scene)
-    refuse_names((*scene.parts, *scene.surfaces, *scene.lights, *scene.views))
     written: list[Path] = []
     with new_folder(target.parent, "a scene"):
         try:
             refuse_output(target, overwrite=overwrite)
             check = guard(target)
-            old = _existing(target)
+            old = b""
+            with suppress(InputError):
+                # A file that is no valid TOML is written anew.
+                present = read_bytes(target, LARGEST_TEXT)
+                entries_of(present)
+                old = present
             meshes = meshes_there(target.parent, scene.mesh, old)
-            if meshes is None:
-                meshes = written_mesh(target.parent, scene.mesh, written)
-            data = None if old is None else _edited(old, target, scene, meshes, complete)
+            meshes = meshes or written_mesh(target.parent, scene.mesh, written)
+            is_same = not old or _is_of_same_object(old, target, scene, meshes)
+            data = _text(old, target, scene, meshes, complete) if is_same else None
+            if data is None and old:
+                LOG.warning("%s: written anew; its old content and comments are lost", target)
+                data = _text(b"", target, scene, meshes, complete)
             if data is None:
-                if old is not None:
-                    LOG.warning("%s: written anew; its old content and comments are lost", target)
-                data = _fresh(target, scene, meshes, complete)
+                raise OutputError(
+                    f"{target}: a scene file must have at most {LARGEST_TEXT:,} bytes and give the same"
+                    " scene, and this one would not; save the scene with its picture instead"
+                )
             check()
             write_atomically(target, data, overwrite=overwrite)
         except BaseException:
@@ -112,12 +105,9 @@ def _target(path: str | os.PathLike[str]) -> Path:
         raise UsageError("a scene must have a place, not an empty name; for the current folder write '.'")
     target = Path(path)
     suffix = target.suffix.lower()
-    try:
-        if target.is_dir():
-            return target / SCENE_FILE
-        is_other = target.exists() and suffix != ".toml"
-    except (OSError, ValueError):
-        is_other = False
+    if os.path.isdir(target):
+        return target / SCENE_FILE
+    is_other = os.path.exists(target) and suffix != ".toml"
     if is_other or suffix in {PICTURE_SUFFIX, *STORE_SUFFIXES, *suffixes_of(MESH_FORMATS)}:
         raise UsageError(
             f"a scene must be written to a folder or to a file that ends in .toml,"
@@ -126,67 +116,22 @@ def _target(path: str | os.PathLike[str]) -> Path:
     return target if suffix == ".toml" else target / SCENE_FILE
 
 
-def refuse_names(rows: Iterable[Row]) -> None:
-    """Raise InputError if a text in a row has a character that UTF-8 lacks."""
-    for row in rows:
-        try:
-            json.dumps(to_plain(row), ensure_ascii=False).encode()
-        except UnicodeEncodeError:
-            raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it") from None
+def _is_of_same_object(old: bytes, target: Path, scene: Scene, meshes: Meshes) -> bool:
+    """Whether a scene's mesh was read by the old text of its scene file, or has a part of its meshes."""
+    source = SOURCES.get(scene.mesh)
+    if entries_of(old) == meshes.entries or (source and source.scene_file == target.resolve()):
+        return True
+    reports = reports_of(target.parent, entries_of(old))
+    return any(set(report.mesh.part_names) & set(scene.mesh.part_names) for report in reports)
 
 
-def _existing(target: Path) -> bytes | None:
-    """The text of the existing scene file; None if the file is missing or no valid TOML."""
-    try:
-        data = read_bytes(target, LARGEST_TEXT)
-        parsed_toml(data, target.name)
-    except InputError:
-        return None
-    return data
-
-
-def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
-    """The old text, edited until it gives the scene; None if it has another object, or no edit succeeds."""
+def _text(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
+    """The old text, which may be empty, edited until it gives the scene; None if no edit succeeds."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
-    source = source_of(mesh)
-    is_same = tuple(document.get("mesh", ())) == meshes.entries
-    if not is_same and (source is None or source.scene_file != target.resolve()):
-        reports = reports_of(target.parent, entries_of(old))
-        if not {name for report in reports for name in report.mesh.part_names} & set(mesh.part_names):
-            return None
-    parts = document.get("parts")
-    if isinstance(parts, dict):
+    if isinstance(parts := document.get("parts"), dict):
         document["parts"] = {name: part for name, part in parts.items() if name in mesh.part_names}
-    present = meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE
-    angle = mesh.crease_angle if complete or mesh.crease_angle != present else None
-    if angle is not None or not is_same:
-        tables = [dict(entry) if is_same else sparse_entry(entry) for entry in meshes.entries]
-        # The angle stands in every table that has the key, else in the first.
-        for table in [table for table in tables if "crease_angle" in table] or tables[:1]:
-            table.update({} if angle is None else {"crease_angle": angle})
-        document["mesh"] = tables
-    data = with_document(old, document)
-    return None if data is None else _giving(data, target, scene, meshes, complete)
-
-
-def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:
-    """A new text that gives the scene. Raises OutputError if the text would be too long, or give another."""
-    entries = [{key: entry[key] for key in entry if key != "crease_angle"} for entry in meshes.entries]
-    text = scene_text(scene, entries, without_defaults=not complete).encode()
-    data = _giving(text, target, scene, meshes, complete=False)
-    if data is None:
-        raise OutputError(
-            f"{target}: a scene file must have at most {LARGEST_TEXT:,} bytes and give the same scene, and"
-            f" this one of {len(text):,} does not; save the scene with its picture instead"
-        )
-    return data
-
-
-def _giving(data: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
-    """The text, edited until it gives the scene; None if no edit does."""
-
-    def read(text: bytes) -> Scene:
-        return report_of_text(text, target, meshes=meshes.reports).scene
-
-    edited = edited_to(data, scene, read, complete=complete)
-    return edited if edited is not None and len(edited) <= LARGEST_TEXT else None
+    if complete or not old:
+        document |= tables_of(scene, sparse=not complete)
+    is_angle_written = complete or mesh.crease_angle != meshes.reports[0].mesh.crease_angle
+    entries = with_crease_angle(meshes.entries, mesh.crease_angle) if is_angle_written else meshes.entries
+    return edited_to(edited_toml(old, {**document, "mesh": entries}), scene, target, meshes.reports)

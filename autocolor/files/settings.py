@@ -7,7 +7,6 @@ by their keys.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import nearest
@@ -15,17 +14,22 @@ from autocolor.errors import UsageError
 from autocolor.files.text_table import value_of_text
 from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of
 from autocolor.scene.kinds import Instance, Text
-from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring, RowList
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, RowList
 from autocolor.scene.scene import Scene
 
 UNSET: Final = "none"
 """The text that unsets a field."""
 
-Changes = dict[str, Any]
-
-
-class FieldsInside(dict[str, Any]):
-    """Settings of fields inside a field; a plain dict is a table that sets the whole field."""
+EDITS: Final[Mapping[str, Callable[..., Scene]]] = {
+    "": Scene.replace,
+    "scalar": Scene.with_scalar,
+    "view": Scene.with_view,
+    "views": Scene.with_named_view,
+    "lights": Scene.with_light,
+    "surfaces": Scene.with_surface,
+    "parts": Scene.with_part,
+}
+"""The methods that change some fields of a row, by its table; the table "" is the scene itself."""
 
 
 def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
@@ -41,95 +45,49 @@ def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
 
     Measured: 0.03 ms for a color.
     """
-    changes: dict[tuple[str, str], Changes] = {}
-    for key, value in settings.items():
-        place = place_of(scene, key)
-        value = _value_for(scene, field_of(place), key, value)
-        _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
+    changes: dict[tuple[str, str], dict[str, Any]] = {}
+    places = {place_of(scene, key): key for key in settings}
+    for place, key in places.items():
+        *around, name = place.path
+        fields = changes.setdefault(place[:2], {})
+        for number, table in enumerate(around, 1):
+            # The result would depend on the order of the two.
+            if whole := places.get(place._replace(path=place.path[:number])):
+                raise UsageError(f"{key}: {whole} is also set, as a whole; leave one out")
+            fields = fields.setdefault(table, {})
+        fields[name] = _value_for(field_of(place), key, settings[key])
     # Set whole rows, which are fields of the scene, before their fields.
     for table, name in sorted(changes, key=lambda row: row[0] != ""):
-        scene = _replaced(scene, table, name, changes[table, name])
+        scene = EDITS[table](scene, *([name] if name else []), **changes[table, name])
     return scene
 
 
-def _replaced(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
-    """The scene with some fields of a row changed; the table "" is the scene itself."""
-    edits: dict[str, Callable[..., Scene]] = {
-        "": scene.replace,
-        "scalar": scene.with_scalar,
-        "view": scene.with_view,
-        "views": partial(scene.with_named_view, name),
-        "lights": partial(scene.with_light, name),
-        "surfaces": partial(scene.with_surface, name),
-        "parts": partial(scene.with_part, name),
-    }
-    return edits[table](**fields)
-
-
-def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> object:
+def _value_for(field: Field | None, key: str, value: object) -> object:
     """The value for a field. Raises UsageError if it unsets a field that must have a value."""
+    text = value if isinstance(value, str) else None
     if field is None:
-        return value_of_text(value) if isinstance(value, str) else value
+        return value if text is None else value_of_text(text)
     kind = field.column.kind
-    if isinstance(value, str):
-        names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
-        refers = isinstance(kind, Referring) and (not field.is_optional or value in names)
-        is_value = kind.validated(value, (), []) is not REFUSED
-        if value.lower() != UNSET or (is_value and (refers or not isinstance(kind, Referring))):
-            parsed = value_of_text(value)
-            if isinstance(kind, References) and not isinstance(parsed, list):
-                return _names_of(parsed if isinstance(parsed, str) else value, names)
-            # A name such as 2 needs no quotes.
-            return value if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str) else parsed
-    elif value is not None:
-        return value
-    if field.is_optional:
-        return None
+    is_value = value is not None
+    if text is not None and text.lower() == UNSET:
+        # A choice, or a name, may be "none".
+        is_value = not field.is_optional and kind.validated(text, (), []) is not REFUSED
+    if is_value and text is not None:
+        parsed = value_of_text(text)
+        if isinstance(kind, References) and not isinstance(parsed, list):
+            # A list of names needs no brackets and no quotes; a name with a comma needs quotes.
+            is_quoted = isinstance(parsed, str) and parsed != text
+            listed = [name.strip(" \"'") for name in text.strip("[] ").split(",")]
+            return [parsed] if is_quoted else list(filter(None, listed))
+        # A name such as 2 needs no quotes.
+        return text if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str) else parsed
+    if is_value or field.is_optional:
+        return value if is_value else None
     default = None if field.default is None else field.default()
     # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
     if default is None or kind.to_plain(key, default).get(key) not in (None, {}):
         raise UsageError(f"{key}: it {kind.rule()}, not none; only an optional field can be unset")
     return default
-
-
-def _names_of(text: str, existing: Sequence[str]) -> list[str]:
-    """The names in a text: the whole text if a row has this name, else the names between commas.
-
-    >>> _names_of("body", []), _names_of("[body, glass]", []), _names_of("a, b", ["a, b"])
-    (['body'], ['body', 'glass'], ['a, b'])
-    """
-    if text in existing:
-        return [text]
-    listed = text[1:-1] if text.startswith("[") and text.endswith("]") else text
-    return [name.strip().strip("\"'") for name in listed.split(",") if name.strip()]
-
-
-def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
-    """Put a value at a path of nested dictionaries, which are created as needed.
-
-    Raises UsageError if both a whole table and a field inside it are set: the result would depend on their
-    order.
-    """
-    for name in path[:-1]:
-        fields = fields.setdefault(name, FieldsInside())
-        if not isinstance(fields, FieldsInside):
-            raise UsageError(f"{key}: {name} is also set as a whole; leave one out")
-    if isinstance(fields.get(path[-1]), FieldsInside):
-        raise UsageError(f"{key}: some of its fields are also set; leave one out")
-    fields[path[-1]] = value
-
-
-EXAMPLES: Final = {
-    "view": "view.angle=10",
-    "views": "views.hood.angle=10",
-    "scalar": "scalar.name=z",
-    "lights": "lights.key.intensity=2",
-    "surfaces": "surfaces.body.blend=0.3",
-    "parts": "parts.hood.surface=body",
-}
-
-MOST_PARTS: Final = 4
-"""Limit: names in the path from a row to a field."""
 
 
 class SettingPlace(NamedTuple):
@@ -152,27 +110,23 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
     if not has_fields or (key == table and fields_of(Scene)[table].is_optional):
         # A whole row can be set and unset, if it is optional.
         return SettingPlace("", "", (table,))
-    name, row = "", None
+    rows: dict[str, Row] = {}
+    name = ""
     if isinstance(kind, RowList):
         rows = {row.name: row for row in vars(scene)[table]}
         name, field = _name_and_rest(field, rows, key, kind.row_class)
-        row = rows.get(name)
-    if not field or (isinstance(kind, RowList) and row is None):
-        raise UsageError(f"{key}: it must name a field; write it as in {EXAMPLES[table]}")
-    path = tuple(field.split("."))
-    named = None if row is None else fields_of(type(row)).get(path[0])
-    is_name = isinstance(kind, RowList) and field == "name"
-    if row is not None and named is not None and isinstance(named.column.kind, NamedRows) and len(path) > 1:
-        inner = field.partition(".")[2]
-        names = [inner_row.name for inner_row in vars(row)[path[0]]]
-        inner_name, rest = _name_and_rest(inner, names, key, named.column.kind.row_class)
-        path = (path[0], inner_name, *(rest.split(".") if rest else ()))
-        is_name = "name" in (inner, rest)
-    if is_name:
+    if not field or (isinstance(kind, RowList) and name not in rows):
+        raise UsageError(f"{key}: it must name a field; write it as in lights.key.intensity or view.angle")
+    first, _, rest = field.partition(".")
+    inner = fields_of(type(rows[name])).get(first) if name in rows else None
+    path = field.split(".")
+    if rest and inner is not None and isinstance(inner.column.kind, NamedRows):
+        names = [row.name for row in vars(rows[name])[first]]
+        inner_name, rest = _name_and_rest(rest, names, key, inner.column.kind.row_class)
+        path = [first, inner_name, *(rest.split(".") if rest else ())]
+    if rows and path[-1] == "name":
         raise UsageError(f"{key}: a name cannot be set; change it in the scene file")
-    if len(path) > MOST_PARTS:
-        raise UsageError(f"{key}: there is no such field; write it as in {EXAMPLES[table]}")
-    return SettingPlace(table, name, path)
+    return SettingPlace(table, name, tuple(path))
 
 
 def _name_and_rest(text: str, names: Iterable[str], key: str, cls: type[Row]) -> tuple[str, str]:

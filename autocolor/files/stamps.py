@@ -9,14 +9,14 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from pathlib import Path
 
-from autocolor.errors import InputError, MissingInputError
+from autocolor.errors import InputError
 from autocolor.files.paths import STORE_SUFFIXES, path_within
 from autocolor.files.reading import opened, read_bytes, read_head
 from autocolor.files.scene_toml.scene_meshes import MESH_FILE_KEYS, entries_of
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT
+from autocolor.files.writing import status_numbers
 
 
 def stamp_of(path: Path) -> str | None:
@@ -25,13 +25,12 @@ def stamp_of(path: Path) -> str | None:
     The stamp of a store includes its write-ahead log, the changes that are not yet in the store file. The
     stamp of a scene file includes the times and sizes of the mesh files that it names.
     """
-    digest, suffix = hashlib.sha256(), path.suffix.lower()
+    digest = hashlib.sha256()
     try:
-        _add_bytes(digest, path)
-        if suffix in STORE_SUFFIXES:
-            with suppress(MissingInputError):
-                _add_bytes(digest, _beside(path, "-wal"))
-        elif suffix == ".toml":
+        for each in (path, *_beside(path, "-wal")):
+            with opened(each) as (file, _):
+                hashlib.file_digest(file, lambda: digest)
+        if path.suffix.lower() == ".toml":
             for numbers in _mesh_numbers(path):
                 digest.update(repr(numbers).encode())
     except (OSError, ValueError):
@@ -40,38 +39,27 @@ def stamp_of(path: Path) -> str | None:
 
 
 def numbers_of(path: Path) -> tuple[int, ...] | None:
-    """Numbers that differ after a file was changed; None if it is missing. The file is not opened."""
-    try:
-        status, log = os.stat(path), _beside(path, "-wal")
-        # SQLite creates an empty log even to read.
-        logs = [os.stat(log)] if log.exists() and os.stat(log).st_size else []
-    except (OSError, ValueError):
-        return None
-    # A program may set the time of a change, but not the time when the status changed.
-    numbers = status.st_dev, status.st_ino, status.st_mtime_ns, status.st_ctime_ns, status.st_size
-    return (*numbers, *(number for each in logs for number in (each.st_mtime_ns, each.st_size)))
+    """Numbers that differ after a file or its log was changed; None if it is missing. It is not opened."""
+    numbers = status_numbers(path)
+    # The time and the size of a log: SQLite changes its status also to read.
+    return numbers and sum(((status_numbers(log) or ())[2::2] for log in _beside(path, "-wal")), numbers)
 
 
 def look_at(path: Path) -> tuple[int, ...] | None:
     """`numbers_of` a file; None also while a program writes to a store, and has a journal to go back."""
-    is_store = path.suffix.lower() in STORE_SUFFIXES
     # A journal that is not needed begins with zeros.
-    has_journal = is_store and read_head(_beside(path, "-journal"))[:1].strip(b"\0")
+    has_journal = any(read_head(each)[:1].strip(b"\0") for each in _beside(path, "-journal"))
     return None if has_journal else numbers_of(path)
 
 
-def _beside(store: Path, ending: str) -> Path:
-    """The write-ahead log or the journal of a store."""
-    return Path(f"{os.path.realpath(store)}{ending}")
+def _beside(path: Path, ending: str) -> list[Path]:
+    """The write-ahead log or the journal of a store, if there is any; SQLite creates an empty log to read."""
+    beside = Path(f"{os.path.realpath(path)}{ending}")
+    size = (status_numbers(beside) or (0,))[-1]
+    return [beside] if size and path.suffix.lower() in STORE_SUFFIXES else []
 
 
-def _add_bytes(digest: hashlib._Hash, path: Path) -> None:
-    """Add the bytes of a regular file to a digest. Raises InputError."""
-    with opened(path) as (file, _):
-        hashlib.file_digest(file, lambda: digest)
-
-
-def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str | int, ...]]:
+def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str, int, int]]:
     """The names, times and sizes of the mesh files that a scene file names. Raises OSError."""
     try:
         entries = entries_of(read_bytes(scene_file, LARGEST_TEXT))
@@ -81,8 +69,7 @@ def _mesh_numbers(scene_file: Path) -> Iterator[tuple[str | int, ...]]:
         names = entry.items() if isinstance(entry, Mapping) else ()
         for name in [name for key, name in names if key in MESH_FILE_KEYS and isinstance(name, str)]:
             path = path_within([], scene_file.parent, name)
-            if path is None or not path.exists():
-                continue
-            for file in sorted(path.iterdir()) if path.is_dir() else [path]:
-                status = file.stat()
-                yield file.name, status.st_mtime_ns, status.st_size
+            if path is not None and path.exists():
+                for file in sorted(path.iterdir()) if path.is_dir() else [path]:
+                    status = file.stat()
+                    yield file.name, status.st_mtime_ns, status.st_size

@@ -27,9 +27,6 @@ MOST_FILES: Final = 10
 COLORS: Final = "recent-colors.json"
 FILES: Final = "recent-files.json"
 
-LARGEST: Final = 1 << 18
-"""Limit: bytes of a list; no paths are so long that it has more."""
-
 
 def state_folder() -> Path:
     """The folder for the state of `autocolor`, which need not exist. Raises OutputError if there is no home.
@@ -37,12 +34,10 @@ def state_folder() -> Path:
     It is in `XDG_STATE_HOME`, or `~/.local/state` without it; on Windows in `LOCALAPPDATA`, and on macOS in
     `~/Library/Application Support`.
     """
-    with suppress(RuntimeError):
-        folder = Path(platformdirs.user_state_dir("autocolor", appauthor=False))
-        # Some versions return a relative path if there is no home.
-        if folder.is_absolute():
-            return folder
-    raise OutputError("the state folder must be in a home folder, and there is none; set XDG_STATE_HOME")
+    folder = Path(platformdirs.user_state_dir("autocolor", appauthor=False))
+    if not folder.is_absolute():
+        raise OutputError("the state folder must be in a home folder, and there is none; set XDG_STATE_HOME")
+    return folder
 
 
 def lock_file(path: Path) -> int | None:
@@ -83,13 +78,12 @@ def note_file(path: str | os.PathLike[str]) -> None:
 
 
 def _entries(name: str) -> list[str]:
-    """The different texts in a list."""
+    """The texts in a list."""
     try:
-        entries = json.loads(read_bytes(state_folder() / name, LARGEST))
+        entries = json.loads(read_bytes(state_folder() / name, 1 << 18))
     except (AutocolorError, ValueError, RecursionError):
         return []
-    texts = [entry for entry in entries if isinstance(entry, str)] if isinstance(entries, list) else []
-    return [*dict.fromkeys(texts)]
+    return [entry for entry in entries if isinstance(entry, str)] if isinstance(entries, list) else []
 
 
 def _note(name: str, entry: str, most: int) -> None:
@@ -97,6 +91,5 @@ def _note(name: str, entry: str, most: int) -> None:
     with suppress(AutocolorError, OSError):
         folder = state_folder()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        others = [other for other in _entries(name) if other != entry]
-        data = json.dumps([entry, *others][:most], indent=1).encode()
-        write_atomically(folder / name, data, overwrite=True)
+        entries = [*dict.fromkeys([entry, *_entries(name)])][:most]
+        write_atomically(folder / name, json.dumps(entries, indent=1).encode(), overwrite=True)

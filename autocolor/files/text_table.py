@@ -24,7 +24,7 @@ from typing import Any, Final
 
 from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.files.reading import HEAD, UTF_8_MARK, text_lines, utf_8_text
+from autocolor.files.reading import HEAD, UTF_8_MARK, text_lines
 from autocolor.files.scene_toml.toml_text import parsed_toml
 
 SEPARATORS: Final = {",": "commas", ";": "semicolons", "\t": "tabs"}
@@ -58,7 +58,6 @@ class TextTable:
 
     def __init__(self, data: bytes, name: str, thing: str = "a table") -> None:
         data = text_lines(data.removeprefix(UTF_8_MARK), name, thing)
-        utf_8_text(data, name, thing)
         head = data[:HEAD].decode("utf-8", "ignore")
         told = SEP_LINE.match(head)
         # Otherwise the separator that the first line with text has most of, outside of quotes.
@@ -72,7 +71,7 @@ class TextTable:
         self.understood = f"separated by {SEPARATORS[self._separator]}"
         self.place = name if self._separator == "," else f"{name} ({self.understood})"
         # Measured: the text in an io.StringIO takes four times as much memory.
-        lines = io.TextIOWrapper(io.BytesIO(data), "utf-8", newline="")
+        lines = map(bytes.decode, io.BytesIO(data))
         self._reader = csv.reader(lines, delimiter=self._separator, strict=True)
         self.row = 0
         if told:
@@ -142,9 +141,10 @@ class TextTable:
         rows: list[list[str]] = []
         try:
             rows.extend(islice(self._reader, count))
-        except csv.Error as error:
+        except (csv.Error, UnicodeDecodeError) as error:
             self.row += len(rows) + 1
-            raise self.wrong(f"it must be CSV ({error}), {self.understood}; correct the row") from None
+            rule = f"it must be CSV in UTF-8 ({error}), {self.understood}"
+            raise self.wrong(f"{rule}; correct the row, or save the table as UTF-8") from None
         self.row += len(rows)
         return rows
 

@@ -34,7 +34,7 @@ from autocolor.errors import AutocolorError, InputError, MissingInputError
 from autocolor.files.opening import read_scene
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
-from autocolor.files.scene_toml.scene_meshes import source_of
+from autocolor.files.scene_toml.scene_meshes import SOURCES
 from autocolor.files.scene_writing import write_scene
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.places import Opened, Source, checksum_of, opened
@@ -224,7 +224,7 @@ class MeshesBeside:
 
 def _folder_beside(folder: Path, mesh: Mesh) -> Path | None:
     """The folder beside the journal that a mesh was read from; None if it was read elsewhere."""
-    source = source_of(mesh)
+    source = SOURCES.get(mesh)
     if source is None or source.scene_file is None or source.folder.parent != folder.resolve():
         return None
     return folder / source.folder.name

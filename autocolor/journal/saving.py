@@ -25,7 +25,7 @@ from autocolor.files.paths import (
     free_path,
 )
 from autocolor.files.picture_file import write_picture
-from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.scene_writing import write_scene
 from autocolor.files.stamps import stamp_of
 from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History, is_picture
@@ -95,7 +95,7 @@ def save_session(history: History, picture: Picture, folder: Path, name: str | N
     written = OnDisk(history.scene, stamp_of(picture_file) or NO_STAMP, is_own=True)
     history.on_disk.note(str(picture_file), written)
     overwrite = scene_file in overwritten
-    write_scene_with_tables(scene_file, history.scene, overwrite=overwrite, complete=False, guard=guard)
+    write_scene(scene_file, history.scene, overwrite=overwrite, guard=guard)
     history.mark_saved({str(path): stamp_of(path) or NO_STAMP for path in (scene_file, picture_file)})
     return SavedFiles(scene_file, picture_file, tuple(backups), changed)
 
@@ -158,9 +158,9 @@ def _backup_of(path: Path) -> Path:
     backup = free_path(path)
     if path.suffix.lower() in STORE_SUFFIXES:
         # SQLite is loaded for stores alone. The latest changes may be beside the store, in its log.
-        from autocolor.files.store.store_file import image_of
+        from autocolor.files.store.connections import store_content
 
-        data = image_of(path)
+        data = store_content(path)
     else:
         data = path.read_bytes()
     write_atomically(backup, data, overwrite=False)

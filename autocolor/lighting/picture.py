@@ -60,8 +60,7 @@ class Picture(Immutable):
     `scalar_values`, (n,) float32 in the order of `pixels`, are the values of the scalar that colors the
     scene, NaN where missing. `scalar_limits` are its own range. Both are None without a scalar.
 
-    `visible_parts` has the part at each of `pixels`. It is None in a picture of rasters without part numbers,
-    or of a file that was written before version 4.
+    `visible_parts` has the part at each of `pixels`. It is None in a picture of rasters without part numbers.
 
     `normals`, (3, n) float32 in the order of `pixels`, are unit vectors in camera space; None unless the
     words of the scene stand for normals.

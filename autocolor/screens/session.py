@@ -480,7 +480,11 @@ class Session:
             return
         if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE and is_rig(path):
             rig = read_rig(path)
-            self.edit(self.scene.with_rig(rig))
+            try:
+                lit = self.scene.with_rig(rig)
+            except InputError as error:
+                raise InputError(f"{path.name}, {problem}" for problem in error.problems) from None
+            self.edit(lit)
             links = [[light.links for light in lights] for lights in (rig.lights, self.scene.lights)]
             left_out = "" if links[0] == links[1] else ", without links to what it lacks"
             self.tell(f"the lights of {path.name}, fitted to {self.scene.name}{left_out}; undo goes back")

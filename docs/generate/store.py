@@ -71,9 +71,8 @@ do in `.tables` files.
 A store is data, and reading it runs no code from it. Views, triggers and tables of other names are
 ignored; a view, a virtual table or a computed column with one of the names below is refused. Statements may
 read, compute, and with `--write` change rows. They may not attach files, load extensions, set pragmas or
-change tables, and they end after 30 seconds (`--seconds`). A value has at most 1 MiB, a value that a
-statement reads or computes 128 KiB. A file has at most 1.1 GB, unless you
-allow more with `--limit`.
+change tables, and they end after 30 seconds (`--seconds`). A value, also one that a statement computes, has
+at most 128 KiB. A file has at most 1.1 GB, unless you allow more with `--limit`.
 
 A store is read into memory, changed there, and replaced as a whole: the new file is written under another
 name and renamed. A program of ours that is killed leaves the old store or the new one, and nothing beside
@@ -81,25 +80,24 @@ it. While a store is changed, SQLite's own lock keeps other programs from changi
 that has the store open from before keeps the old file. SQLite refuses its changes (`attempt to write a
 readonly database`) until it opens the store again.
 
-Tables, views, indexes and triggers of other programs stay, and none of them is run. If one does not fit the
-rows of the new scene, the store is left as it is. A table with a name below and other columns than ours is
-made anew, without the indexes that others gave it. `--write` refuses a store with triggers, because its
-statement would run them. A studio that shows a store, or a scene file, shows the changes of other programs as
-one step to undo; with unsaved edits it asks.
+Tables, views, indexes and triggers of other programs stay, and none of them is run: the tables below are made
+anew, and then the indexes and triggers that others gave them. If one does not fit the rows of the new scene,
+the store is left as it is. `--write` refuses a store with triggers, because its statement would run them. A
+studio that shows a store, or a scene file, shows the changes of other programs as one step to undo; with
+unsaved edits it asks.
 
 What another program has written to a `-wal` file is read with the store. Before the store is replaced,
 SQLite moves the log into it, and the store leaves WAL mode. While a program has the store open in WAL mode,
-it is read and not replaced. Do not turn WAL mode on while several programs change a store.
+it is read and not replaced. Do not turn WAL mode on while several programs change a store. A store in WAL
+mode cannot be read where SQLite may not write.
 
 If a program was killed while it changed the store, SQLite takes the change back by the `-journal` beside
 it, as any tool of SQLite does. A `-journal` can also name another file, which SQLite deletes afterwards.
 Such a store is refused, for reading and for writing. If you trust both files, open the store once with
 `sqlite3 FILE .tables`; otherwise move the journal away.
 
-Each column that refers to another table has an index, so that joins are fast in any tool. The indexes are
-created after the rows. With them, a million nodes and a million quads are written in 3.9 seconds instead of
-2.7, and the file has 108 MB instead of 45. They are read in 2.5 seconds; `files/store/rows.py` has the other
-measurements.
+The indexes make it fast to rename parts, and to remove nodes and polygons with their values. They are created
+after the rows.
 
 ## The mesh
 """
@@ -133,25 +131,24 @@ def lines_of(table: RowTable) -> Iterator[str]:
     """The reference of a table, a line a column; the three columns of a vector share one."""
     yield f"\n### `{table.name}`\n\n| column | type | what it is | value | default |\n|---|---|---|---|---|\n"
     for column in table.columns:
-        if not column.component:
+        if column.path[-1] not in (1, 2):
             default = "" if column.default is None else f"`{shown_default(table, column)}`"
             told = default or ("NULL" if column.may_be_null else "")
-            rule = column.kind.rule().removeprefix("must be ")
-            yield f"| `{shown_name(column)}` | {column.type} | {column.help} | {rule} | {told} |\n".replace(
-                "|| ", "| "
-            )
+            rule = column.column.kind.rule().removeprefix("must be ")
+            name, text = shown_name(column), column.column.help
+            yield f"| `{name}` | {column.type} | {text} | {rule} | {told} |\n".replace("|| ", "| ")
 
 
 def shown_name(column: SqlColumn) -> str:
     """The name of a column; of a vector, with all its axes."""
-    return column.name if column.component is None else f"{column.name[:-1]}x`, `..._y`, `..._z"
+    return f"{column.name[:-1]}x`, `..._y`, `..._z" if column.path[-1] == 0 else column.name
 
 
 def shown_default(table: RowTable, column: SqlColumn) -> str:
     """The default of a column; of a vector, those of all its axes."""
-    if column.component is None:
+    if column.path[-1] != 0:
         return literal(column.default)
-    return ", ".join(literal(each.default) for each in table.columns if each.path == column.path)
+    return ", ".join(literal(each.default) for each in table.columns if each.path[:-1] == column.path[:-1])
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from autocolor import InputError, Scene, Studio, UsageError, read_scene, render,
 from autocolor import budget as module
 from autocolor.budget import MEMORY, allowed_memory, allowing, require_memory, validated_limit
 from autocolor.commands.info import info
-from autocolor.files.conversion import output_named
+from autocolor.files.opening import output_named
 from autocolor.lighting.illumination import BYTES_OF_LIGHT, SHARE
 from autocolor.rendering import rendering
 from ramtek_emu import Ramtek9300

@@ -6,9 +6,8 @@
     node node -node ...                     the corners of each polygon; the last is negative
 
 Numbers are separated by white space or, in columns of Fortran, by the sign of the second. A part is named by
-its number, as in "part 1"; a polygon in no range belongs to a part named after the file, and one in several
-ranges to the last. Exponents may be written with D. Displacements and scalars are in files of their own,
-which are not read.
+its number, as in "part 1"; a polygon in no range belongs to a part named after the file. Exponents may be
+written with D. Displacements and scalars are in files of their own, which are not read.
 """
 
 from __future__ import annotations
@@ -19,7 +18,6 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Indices
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import GROWTH, NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, different, repaired
@@ -34,10 +32,9 @@ def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
     data = text_lines(read_whole(path, GROWTH), path.name, "a Movie.BYU file")
     text = NumberText(TOUCHING.sub(b" ", data), path.name)
     text.require(4, "header")
-    parts, nodes, polygons, connectivity = counts = text.wholes(0, 4, "a count in the header").tolist()
-    for at, (count, least) in enumerate(zip(counts, (0, 1, 1, 1), strict=True)):
-        if count < least:
-            raise text.wrong(at, f"a count in the header must be at least {least}")
+    parts, nodes, polygons, connectivity = header = text.wholes(0, 4, "a count in the header").tolist()
+    if parts < 0 or min(header[1:]) < 1:
+        raise text.wrong(0, "the header must count parts from 0, and nodes, polygons and corners from 1")
     first_node = 4 + 2 * parts
     first_corner = first_node + 3 * nodes
     end = first_corner + connectivity
@@ -47,10 +44,10 @@ def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
     # Corners.
     numbers = text.wholes(first_corner, connectivity, "a corner")
     corners = np.abs(numbers) - 1
-    wrong = np.flatnonzero((corners < 0) | (corners >= nodes))
-    if len(wrong):
+    is_node = (corners >= 0) & (corners < nodes)
+    if not is_node.all():
         rule = f"a corner must be a node number of 1 to {nodes:,}, or minus one"
-        raise text.wrong(first_corner + int(wrong[0]), rule)
+        raise text.wrong(first_corner + int(is_node.argmin()), rule)
     ends = np.flatnonzero(numbers < 0)
     if len(ends) != polygons or numbers[-1] > 0:
         raise InputError(
@@ -58,34 +55,22 @@ def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
             " ended by a negative corner; correct the header or the connectivity"
         )
 
-    names, part_numbers = _parts(text, parts, polygons, path.stem)
-    left = len(text) - end
-    skipped = (f"skipped words after the connectivity: {left:,}",) if left else ()
-    raw = RawPolygons(coordinates, corners.astype(np.intp), np.diff(ends, prepend=-1), part_numbers, names)
-    return repaired(raw, path.name, placement, skipped=skipped)
-
-
-def _parts(text: NumberText, parts: int, polygons: int, stem: str) -> tuple[tuple[str, ...], Indices]:
-    """The names of the parts, and the part number of each polygon. Raises InputError."""
+    # Parts.
     ranges = text.wholes(4, 2 * parts, "a part range").reshape(-1, 2)
-    wrong = np.flatnonzero((ranges[:, 0] < 1) | (ranges[:, 1] > polygons) | (ranges[:, 0] > ranges[:, 1]))
-    if len(wrong):
-        part = int(wrong[0])
-        first, last = ranges[part].tolist()
-        raise InputError(
-            f"{text.place}, line {text.line(4 + 2 * part)}: part {part + 1} must have polygons of 1 to"
-            f" {polygons:,}, in order, not {first} to {last}; correct its range"
-        )
-    # Each polygon of a range takes time.
-    if (count := int((ranges[:, 1] - ranges[:, 0] + 1).sum())) > 2 * polygons:
-        raise InputError(
-            f"{text.place}: the ranges of {parts:,} parts must overlap less: they have {count:,} polygons,"
-            f" and the file {polygons:,}; give each polygon one part"
-        )
+    first, last = ranges.T
+    is_wrong = (first < 1) | (last > polygons) | (first > last) | (np.cumsum(last - first + 1) > polygons)
+    if is_wrong.any():
+        part = int(is_wrong.argmax())
+        rule = f"part {part + 1} must have polygons of 1 to {polygons:,}, in order, which no other part has"
+        raise text.wrong(4 + 2 * part, rule)
     part_numbers = np.full(polygons, parts, np.intp)
-    for part, (first, last) in enumerate(ranges.tolist()):
-        part_numbers[first - 1 : last] = part
+    for part, (begin, end_of_part) in enumerate(ranges.tolist()):
+        part_numbers[begin - 1 : end_of_part] = part
     names = [f"part {part + 1}" for part in range(parts)]
     if (part_numbers == parts).any():
-        names.append(stem)
-    return different(names), part_numbers
+        names.append(path.stem)
+    left = len(text) - end
+    skipped = (f"skipped words after the connectivity: {left:,}",) if left else ()
+    counts = np.diff(ends, prepend=-1)
+    raw = RawPolygons(coordinates, corners.astype(np.intp), counts, part_numbers, different(names))
+    return repaired(raw, path.name, placement, skipped=skipped)

@@ -15,13 +15,16 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks, underflowing
+from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks, dot, underflowing
 from autocolor.files.meshes.welding import welded
 from autocolor.immutable import read_only
 from autocolor.scene.geometry.normals import NodeNormals, places_of_corners, polygon_normals
 
 NEARLY_UNIT: Final = 1e-6
 """Assumed: a length so near to 1 is rounding; such a normal stays as it is, to be read back equal."""
+
+SHORTEST: Final = 1e-150
+"""The squares of shorter vectors have lost digits; they count as zero."""
 
 POLYGONS_AT_ONCE: Final = 1 << 13
 
@@ -41,23 +44,14 @@ def file_normals(
     rows[(rows < 0) | (rows >= len(unit))] = -1
     # The last row stands for a missing normal.
     rows[~np.append(is_sound, False)[rows]] = -1
-    sentences = []
-    if missing := int(
-        (rows[:3] < 0).sum() + ((rows[3] < 0) & (node_numbers[:, 2] != node_numbers[:, 3])).sum()
-    ):
-        sentences.append(
-            f"{missing:,} corners have no normals of their own; they were computed"
-            if missing > 1
-            else "1 corner has no normal of its own; it was computed"
-        )
+    sentences, is_quad = list[str](), node_numbers[:, 2] != node_numbers[:, 3]
+    if missing := int((rows[:3] < 0).sum() + ((rows[3] < 0) & is_quad).sum()):
+        sentences.append(f"computed the normals of corners that have none: {missing:,}")
     if (rows < 0).all():
         return None, sentences
     is_turned = _point_back(coordinates, node_numbers, unit, rows)
     if count := int(is_turned.sum()):
-        sentences.append(
-            f"the normals of {count:,} {'polygon' if count == 1 else 'polygons'} point against the winding"
-            f" of {'its' if count == 1 else 'their'} corners and were turned over"
-        )
+        sentences.append(f"turned over the normals of polygons that wind the other way: {count:,}")
         rows = np.where(is_turned & (rows >= 0), rows + len(unit), rows)
         unit = np.concatenate([unit, 0 - unit])
     return _without_copies(coordinates, node_numbers, unit, rows), sentences
@@ -66,13 +60,9 @@ def file_normals(
 def _units(vectors: Floats) -> tuple[Singles, Booleans]:
     """The vectors, (n, 3), as unit vectors of float32, and which of them are finite and not zero."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        sizes = np.abs(vectors).max(axis=1, initial=0)
-        is_sound = np.isfinite(sizes) & (sizes > 0)
-        lengths = np.sqrt((vectors**2).sum(axis=1))
-        is_unit = np.abs(lengths - 1) < NEARLY_UNIT
-        scaled = vectors / sizes[:, None]
-        scaled /= np.sqrt((scaled**2).sum(axis=1))[:, None]
-        unit = np.where(is_unit[:, None], vectors, scaled)
+        sizes = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
+        unit = np.where(np.abs(sizes - 1) < NEARLY_UNIT, vectors, vectors / sizes)
+    is_sound = np.isfinite(sizes[:, 0]) & (sizes[:, 0] > SHORTEST)
     unit[~is_sound] = 0.0
     # Adding 0 turns -0 into 0.
     return unit.astype(np.float32) + np.float32(0), is_sound
@@ -80,13 +70,11 @@ def _units(vectors: Floats) -> tuple[Singles, Booleans]:
 
 def _point_back(coordinates: Floats, node_numbers: Indices, unit: Singles, rows: Indices) -> Booleans:
     """Whether the normals of each polygon together point to its back."""
-    is_turned = np.empty(len(node_numbers), np.bool_)
-    vectors = np.append(unit, np.zeros((1, 3), np.float32), axis=0).T
+    is_turned, vectors = list[Booleans](), np.append(unit, np.zeros((1, 3), np.float32), axis=0).T
     for chunk in chunks(len(node_numbers), POLYGONS_AT_ONCE):
         planes = polygon_normals(np.take(coordinates.T, node_numbers[chunk].T, axis=1))
-        sums = np.take(vectors, rows[:, chunk], axis=1).sum(axis=1)
-        is_turned[chunk] = (planes * sums).sum(axis=0) < 0
-    return is_turned
+        is_turned.append(dot(planes, np.take(vectors, rows[:, chunk], axis=1).sum(axis=1)) < 0)
+    return np.concatenate(is_turned)
 
 
 def _without_copies(coordinates: Floats, node_numbers: Indices, unit: Singles, rows: Indices) -> NodeNormals:

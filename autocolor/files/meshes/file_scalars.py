@@ -50,8 +50,7 @@ class FileScalars:
             if count := int(is_large.sum()):
                 numbers = np.where(is_large, np.nan, numbers)
                 self._sentences.append(
-                    f"scalar {shown(name + what)}: {count:,} value{'s' * (count > 1)} above 1e30 in size"
-                    f" {'was' if count == 1 else 'were'} made missing"
+                    f"scalar {shown(name + what)}: values above 1e30 in size were made missing: {count:,}"
                 )
             self._scalars[of].append((name + what, numbers))
 
@@ -88,13 +87,8 @@ def _one_component(values: AnyArray) -> tuple[str, Floats] | None:
 
 
 def von_mises(tensors: Floats) -> Floats:
-    """Von Mises' equivalent stress of stress tensors, (n, 9), of which the symmetric part counts.
-
-    >>> float(von_mises(np.array([[3.0, 0, 0, 0, 0, 0, 0, 0, 0]]))[0])
-    3.0
-    """
-    xx, yy, zz = tensors[:, 0], tensors[:, 4], tensors[:, 8]
-    xy, yz, zx = ((tensors[:, one] + tensors[:, other]) / 2 for one, other in ((1, 3), (5, 7), (2, 6)))
-    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    stress: Floats = np.sqrt(normal / 2 + 3 * (xy * xy + yz * yz + zx * zx))
+    """Von Mises' equivalent stress of stress tensors, (n, 9), of which the symmetric part counts."""
+    stresses = (tensors + tensors[:, [0, 3, 6, 1, 4, 7, 2, 5, 8]]) / 2
+    deviators = stresses - stresses[:, [0, 4, 8]].mean(axis=1)[:, None] * np.eye(3).ravel()
+    stress: Floats = np.sqrt(1.5 * (deviators**2).sum(axis=1))
     return stress

@@ -30,11 +30,11 @@ from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.surfaces import Surface
 
-LARGEST_LIBRARIES: Final = 4 * 1024 * 1024
-"""Limit: bytes of all libraries of a file, enough for ten thousand materials."""
+LARGEST_LIBRARY: Final = 4 * 1024 * 1024
+"""Limit: bytes of a library, enough for ten thousand materials."""
 
-MOST_LIBRARIES: Final = 100
-"""Limit: names of libraries that are looked for."""
+MOST_LIBRARIES: Final = 20
+"""Limit: libraries of a file that are read."""
 
 LARGEST: Final = 1e6
 """Limit: above every coefficient and exponent of a material."""
@@ -59,63 +59,45 @@ def read_materials(
     """
     if not wanted:
         return (), ()
-    paths, missing = _paths(obj, libraries)
+    # The argument is one name with spaces, or several names.
+    found = [
+        _paths(obj.parent, [library]) or _paths(obj.parent, library.split())
+        for library in libraries[:MOST_LIBRARIES]
+    ]
+    paths = [path for each in found for path in each]
+    # The library may have been renamed together with the OBJ file.
+    paths = paths or _paths(obj.parent, [os.fsencode(f"{obj.stem}.mtl")])
     sentences: list[str] = []
     surface_of: dict[str, Surface] = {}
-    left = LARGEST_LIBRARIES
-    for path in paths:
+    for path in [*dict.fromkeys(paths)][:MOST_LIBRARIES]:
         try:
-            data = read_bytes(path, left)
-            left -= len(data)
-            data = text_lines(data, path.name, "a material library")
+            data = text_lines(read_bytes(path, LARGEST_LIBRARY), path.name, "a material library")
         except InputError as error:
             sentences.append(f"the materials have default colors: {error}")
             continue
         surfaces, notes = materials_of(data, path.name, set(wanted))
         surface_of = {**surfaces, **surface_of}
         sentences.extend(notes)
-    if missing:
-        sentences.append(
-            f"the materials have default colors: there is no library {_some(missing)} in the folder of"
-            f" {obj.name}; copy it there"
-        )
     undefined = [name for name in wanted if name not in surface_of]
-    if surface_of and undefined:
-        sentences.append(f"no library defines material {_some(undefined)}; default colors are used")
+    if undefined and (libraries or paths):
+        more = f" and {len(undefined) - 3:,} more" if len(undefined) > 3 else ""
+        missing = [shown(library) for library, each in zip(libraries, found, strict=False) if not each]
+        advice = f"; copy {missing[0]} to the folder of {obj.name}" if missing else ""
+        sentences.append(
+            f"no library defines material {', '.join(map(shown, undefined[:3]))}{more}; default colors are"
+            f" used{advice}"
+        )
     return tuple(surface_of[name] for name in wanted if name in surface_of), tuple(sentences)
 
 
-def _some(names: Sequence[str | bytes]) -> str:
-    """The first names for a message, and how many more there are."""
-    more = f" and {len(names) - 3:,} more" if len(names) > 3 else ""
-    return f"{', '.join(map(shown, names[:3]))}{more}"
-
-
-def _paths(obj: Path, libraries: Sequence[bytes]) -> tuple[list[Path], list[bytes]]:
-    """The paths of the libraries, and the arguments without a file."""
-    paths: list[Path | None] = []
-    missing: list[bytes] = []
-    for library in dict.fromkeys(libraries[:MOST_LIBRARIES]):
-        # The argument is one name with spaces, or several names.
-        whole = _path(obj.parent, library)
-        files = [whole] if whole else [_path(obj.parent, name) for name in library.split()[:MOST_LIBRARIES]]
-        paths += files
-        if not any(files):
-            missing.append(library)
-    if not any(paths) and (beside := _path(obj.parent, os.fsencode(f"{obj.stem}.mtl"))):
-        # The library may have been renamed together with the OBJ file.
-        return [beside], []
-    return [path for path in dict.fromkeys(paths) if path][:MOST_LIBRARIES], missing
-
-
-def _path(folder: Path, name: bytes) -> Path | None:
-    """The path of a library within the folder; None if there is no such file."""
-    text = name_of(name.strip().strip(b'"'))
-    for candidate in (text, text.replace("\\", "/"), PureWindowsPath(text).name):
-        path = path_within([], folder, candidate)
-        if path is not None and os.path.isfile(path):
-            return path
-    return None
+def _paths(folder: Path, names: Sequence[bytes]) -> list[Path]:
+    """The paths of the libraries that are within the folder, each by its path or its file name."""
+    paths = []
+    for name in names[:MOST_LIBRARIES]:
+        windows = PureWindowsPath(name_of(name.strip().strip(b'"')))
+        candidates = [path_within([], folder, text) for text in (windows.as_posix(), windows.name)]
+        paths += [path for path in candidates if path is not None and os.path.isfile(path)][:1]
+    return paths
 
 
 def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str, Surface], list[str]]:

@@ -1,4 +1,4 @@
-"""Meshes in Wavefront OBJ files: read with their materials, and written.
+"""Meshes in Wavefront OBJ files, and their materials in a library beside them: read and written.
 
 These statements are used: `v` x y z (a color after them is left out, a weight is ignored); `vn`, a normal;
 `f`, with numbers of nodes and normals that count from 1 or, if negative, back from the latest; `g`, `o` and
@@ -12,18 +12,21 @@ may end with LF, CR LF or CR, may be continued with a backslash, and may start w
 from __future__ import annotations
 
 import dataclasses
+import io
+import os
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from itertools import compress, pairwise
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from itertools import compress
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Floats, Indices, Numbers, chunks
+from autocolor.arrays import Booleans, Floats, Indices, Numbers
 from autocolor.errors import InputError
-from autocolor.files.meshes.mtl import read_materials, statement
+from autocolor.files.meshes.mtl import materials_of, mtl_text, read_materials, statement
 from autocolor.files.meshes.number_text import NumberText, decimal
 from autocolor.files.meshes.repair import (
     PLAIN,
@@ -34,8 +37,13 @@ from autocolor.files.meshes.repair import (
     name_of,
     repaired,
 )
+from autocolor.files.paths import free_path
 from autocolor.files.reading import read_whole, shown, text_lines
+from autocolor.files.writing import refuse_output, write_atomically
+from autocolor.scene.creation import SHARED
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Surface
 
 NODE_LINE: Final = re.compile(rb"^[ \t]*v([ \t]+[-+.0-9][^\s]*){3}", re.MULTILINE)
 """A line that defines a node."""
@@ -70,20 +78,26 @@ def begins_as_obj(head: bytes) -> bool:
     return NODE_LINE.search(head) is not None and b"\0" not in head
 
 
-# Large blocks of lines become arrays at once. The numbers of the lines of one kind in a block, such as nodes,
-# are converted together: all other lines become empty, so that a wrong word gets its line.
-
 BLOCK: Final = 1 << 21
-"""Bytes converted at a time: enough for numpy to be efficient, and few enough to save memory."""
+"""Bytes of lines whose numbers become arrays at a time: enough for numpy to be efficient, and few enough to
+save memory."""
 
 COMMENT: Final = re.compile(rb"#[^\n]*")
-INDENT: Final = re.compile(rb"^[ \t]+", re.MULTILINE)
+INDENT: Final = re.compile(rb"^ +", re.MULTILINE)
 CONTINUED: Final = re.compile(rb"(?:[^\n]*\\\n)++[^\n]*+")
 
-SPACE: Final = ord(" ")
-FEED: Final = ord("\n")
-SLASH: Final = ord("/")
-NONE: Final = np.empty(0, np.int64)
+OTHER: Final = 0
+NODE: Final = 1
+NORMAL: Final = 2
+POLYGON: Final = 3
+UNUSED: Final = 4
+KINDS: Final = {
+    **{b"": UNUSED, b"v": NODE, b"vn": NORMAL, b"f": POLYGON},
+    **dict.fromkeys(
+        b"vt s mg maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split(), UNUSED
+    ),
+}
+"""The kinds of the statements; those that are UNUSED are ignored without being counted."""
 
 
 def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygons:
@@ -96,43 +110,38 @@ def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygon
         data = CONTINUED.sub(
             lambda lines: lines[0].replace(b"\\\n", b" ") + b"\n" * lines[0].count(b"\\\n"), data
         )
-    if data[:1] in (b" ", b"\t") or b"\n " in data or b"\n\t" in data:
+    data = data.replace(b"\t", b" ")
+    if data[:1] == b" " or b"\n " in data:
         data = INDENT.sub(b"", data)
-    nodes, normals, polygons = [np.empty((0, 3))], [np.empty((0, 3))], [[NONE] * 7]
+    none = np.empty(0, np.int64)
+    nodes, normals, polygons = [np.empty((0, 3))], [np.empty((0, 3))], [[none] * 7]
     node_count = normal_count = 0
     first_line = 1
-    data = data if data.endswith(b"\n") else data + b"\n"
-    start = 0
-    while start < len(data):
-        end = data.find(b"\n", min(start + BLOCK, len(data) - 1)) + 1
-        block, start = data[start:end], end
-        letters = np.frombuffer(block, np.uint8)
-        ends = np.flatnonzero(letters == FEED)
-        starts = np.concatenate([[0], ends[:-1] + 1])
-
-        # Classify the lines by their first bytes.
-        first, second, third = (letters[np.minimum(starts + at, ends)] for at in range(3))
-        is_v = first == ord("v")
-        is_node, is_polygon = is_v & (second <= SPACE), (first == ord("f")) & (second <= SPACE)
-        is_normal = is_v & (second == ord("n")) & (third <= SPACE)
-        unused = is_normal | (is_v & (second == ord("t")) & (third <= SPACE))
-        unused |= (first == ord("#")) | (first == FEED)
-
-        lines = Lines(letters, starts, ends, place, first_line)
-        vectors, sizes = lines.vectors(is_node)
+    stream = io.BytesIO(data)
+    while rows := (stream.read(BLOCK) + stream.readline()).splitlines():
+        kinds = bytes([KINDS.get(row.partition(b" ")[0], OTHER) for row in rows])
+        lines = Lines(rows, kinds, place, first_line)
+        vectors, sizes = lines.vectors()
         # Three numbers after the coordinates are a color; a single one is a weight.
         statements.has_colors |= bool(sizes.max(initial=0) >= 6)
         nodes.append(vectors)
-        normals.append(lines.normals(is_normal))
-        rows = np.flatnonzero(is_polygon)
-        others = np.flatnonzero(~(is_node | is_polygon | unused))
-        parts = _part_numbers(block, others, starts, ends, rows, statements)
-        nodes_before = node_count + np.cumsum(is_node)[rows]
-        normals_before = normal_count + np.cumsum(is_normal)[rows]
-        polygons.append([*lines.corners(is_polygon), parts, nodes_before, normals_before, first_line + rows])
+        normals.append(lines.normals())
+        chosen = lines.are(POLYGON)
+        # The part changes at other statements alone.
+        others = np.append(np.flatnonzero(lines.are(OTHER)), len(rows))
+        ends = np.append(0, np.cumsum(chosen))[others].tolist()
+        parts = np.zeros(ends[-1], np.int64)
+        for line, begin, end in zip(others.tolist(), [0, *ends], ends, strict=False):
+            if begin < end:
+                parts[begin:end] = statements.part_number
+            statements.read(b"".join(rows[line : line + 1]))
+        nodes_before = node_count + np.cumsum(lines.are(NODE))[chosen]
+        normals_before = normal_count + np.cumsum(lines.are(NORMAL))[chosen]
+        line_of = first_line + np.flatnonzero(chosen)
+        polygons.append([*lines.corners(), parts, nodes_before, normals_before, line_of])
         node_count += len(nodes[-1])
         normal_count += len(normals[-1])
-        first_line += len(ends)
+        first_line += len(rows)
     columns = (np.concatenate(column) for column in zip(*polygons, strict=True))
     node_numbers, normal_numbers, counts, part_numbers, nodes_before, normals_before, line_of = columns
     corners = _rows(node_numbers, nodes_before, counts, node_count)
@@ -150,7 +159,6 @@ def read_polygons(data: bytes, place: str, statements: Statements) -> RawPolygon
         counts,
         part_numbers,
         tuple(statements.parts()),
-        place_of=lambda row: f"line {line_of[row]}",
         normals=np.concatenate(normals) if has_normals else None,
         corner_normals=_rows(normal_numbers, normals_before, counts, normal_count) if has_normals else None,
     )
@@ -171,58 +179,59 @@ def _rows(numbers: Numbers, before: Numbers, counts: Numbers, count: int) -> Ind
 
 
 class Lines(NamedTuple):
-    """A block of lines: its letters, where lines start and end, the file's name, the first line's number."""
+    """Some lines, their KINDS, the file's name, and the number of the first line."""
 
-    letters: Bytes
-    starts: Numbers
-    ends: Numbers
+    rows: list[bytes]
+    kinds: bytes
     place: str
     first_line: int
 
-    def vectors(self, chosen: Booleans) -> tuple[Floats, Numbers]:
-        """The coordinates of the chosen nodes, (n, 3), and how many numbers each has. Raises InputError."""
-        if not chosen.any():
-            return np.empty((0, 3)), NONE
-        text, upto = self._numbers(self._only(chosen, 1), chosen)
-        sizes = np.diff(upto, prepend=0)
-        if sizes.min() < 3:
-            rule = "a node must have three coordinates x y z"
-            line = self.first_line + int(np.flatnonzero(chosen)[sizes.argmin()])
-            raise InputError(f"{self.place}, line {line}: {rule}, not {sizes.min()}; add what is missing")
-        return text.vectors(upto - sizes, len(text)), sizes
+    def are(self, kind: int) -> Booleans:
+        """Which lines are of a kind."""
+        are: Booleans = np.frombuffer(self.kinds, np.uint8) == kind
+        return are
 
-    def normals(self, chosen: Booleans) -> Floats:
-        """The chosen normals, (n, 3); one that is no three numbers is NaN, which is a missing normal."""
-        lines = self._only(chosen, 2)
-        try:
-            text, upto = self._numbers(lines, chosen)
-            if (np.diff(upto, prepend=0) == 3).all():
+    def vectors(self) -> tuple[Floats, Numbers]:
+        """The coordinates of the nodes, (n, 3), and how many numbers each has. Raises InputError."""
+        text, sizes = self._numbers(self._text(NODE), NODE)
+        if not len(sizes):
+            return np.empty((0, 3)), sizes
+        if sizes.min() < 3:
+            line = self.first_line + int(np.flatnonzero(self.are(NODE))[sizes.argmin()])
+            rule = "a node must have three coordinates x y z"
+            raise InputError(f"{self.place}, line {line}: {rule}, not {sizes.min()}; add what is missing")
+        return text.vectors(np.cumsum(sizes) - sizes, len(text)), sizes
+
+    def normals(self) -> Floats:
+        """The normals, (n, 3); one that is no three numbers is NaN, which is a missing normal."""
+        lines = self._text(NORMAL)
+        with suppress(InputError):
+            text, sizes = self._numbers(lines, NORMAL)
+            if (sizes == 3).all():
                 return text.values(0, len(text)).reshape(-1, 3)
-        except InputError:
-            pass
-        words = [line.split() for line in compress(lines.split(b"\n"), chosen)]
+        words = [line.split() for line in compress(lines.split(b"\n"), self.are(NORMAL))]
         return np.array([[decimal(word) for word in row] if len(row) == 3 else [np.nan] * 3 for row in words])
 
-    def corners(self, chosen: Booleans) -> tuple[Numbers, Numbers, Numbers]:
-        """The node and normal numbers of all corners of the chosen polygons, and how many corners each has.
+    def corners(self) -> tuple[Numbers, Numbers, Numbers]:
+        """The node and normal numbers of all corners of the polygons, and how many corners each has.
 
         Corners are such as 7, 7/1, 7//3 or 7/1/3; a normal number of 0 is none. Raises InputError.
         """
-        if not chosen.any():
-            return NONE, NONE, NONE
         # A texture number that is left out becomes 0.
-        lines = self._only(chosen, 1).replace(b"//", b"/0/")
-        text, upto = self._numbers(lines.replace(b"/", b" "), chosen)
+        lines = self._text(POLYGON).replace(b"//", b"/0/")
+        text, sizes = self._numbers(lines.replace(b"/", b" "), POLYGON)
         numbers = text.wholes(0, len(text), "a corner")
         if b"/" not in lines:
-            return numbers, np.zeros(len(numbers), np.int64), np.diff(upto, prepend=0)
+            return numbers, np.zeros(len(numbers), np.int64), sizes
         letters = np.frombuffer(lines, np.uint8)
-        slashes = np.flatnonzero(letters == SLASH)
-        is_head = letters[text.starts - 1] != SLASH
-        heads = np.flatnonzero(is_head)
-        sizes = np.diff(heads, append=len(text))
+        slashes = np.flatnonzero(letters == ord("/"))
         before = letters[slashes - 1]
-        wrong = np.append(slashes[(before <= SPACE) | (before == SLASH)], text.starts[heads[sizes > 3]])
+        is_head = letters[text.starts - 1] != ord("/")
+        heads = np.flatnonzero(is_head)
+        lengths = np.diff(heads, append=len(text))
+        wrong = np.append(
+            slashes[(before <= ord(" ")) | (before == ord("/"))], text.starts[heads[lengths > 3]]
+        )
         if len(wrong):
             at = int(wrong[0])
             line = self.first_line + lines.count(b"\n", 0, at)
@@ -230,39 +239,24 @@ class Lines(NamedTuple):
             rule = "a corner must be a node number, alone or with texture and normal numbers as in 7/1/3"
             raise InputError(f"{self.place}, line {line}: {rule}, not {word}; correct it")
         normals = np.zeros(len(heads), np.int64)
-        with_normal = np.flatnonzero(sizes == 3)
-        normals[with_normal] = numbers[heads[with_normal] + 2]
-        return numbers[heads], normals, np.diff(np.append(0, np.cumsum(is_head))[upto], prepend=0)
+        normals[lengths == 3] = numbers[heads[lengths == 3] + 2]
+        heads_before = np.append(0, np.cumsum(is_head))
+        return numbers[heads], normals, np.diff(heads_before[np.cumsum(sizes)], prepend=0)
 
-    def _only(self, chosen: Booleans, keyword: int) -> bytes:
-        """The block with all lines but the chosen ones empty, without a keyword of so many letters."""
-        text = self.letters[np.repeat(chosen, self.ends + 1 - self.starts) | (self.letters == FEED)]
-        starts = np.append(0, np.flatnonzero(text == FEED) + 1)[:-1][chosen]
-        for at in range(keyword):
-            text[starts + at] = SPACE
-        lines = text.tobytes()
-        return COMMENT.sub(b"", lines) if b"#" in lines else lines
+    def _text(self, kind: int) -> bytes:
+        """The lines of a kind without their keywords; other lines are empty, so that a word has its line."""
+        cut = 2 if kind == NORMAL else 1
+        if kind not in self.kinds:
+            return b"\n" * len(self.rows)
+        lines = [row[cut:] if each == kind else b"" for each, row in zip(self.kinds, self.rows, strict=True)]
+        text = b"\n".join([*lines, b""])
+        return COMMENT.sub(b"", text) if b"#" in text else text
 
-    def _numbers(self, lines: bytes, chosen: Booleans) -> tuple[NumberText, Numbers]:
-        """The numbers of the lines, and how many there are up to the end of each chosen line."""
+    def _numbers(self, lines: bytes, kind: int) -> tuple[NumberText, Numbers]:
+        """The numbers of the lines of a kind, and how many there are in each."""
         text = NumberText(lines, self.place, self.first_line)
-        ends = np.flatnonzero(np.frombuffer(lines, np.uint8) == FEED)
-        return text, np.searchsorted(text.starts, ends[chosen])
-
-
-def _part_numbers(
-    block: bytes, others: Numbers, starts: Numbers, ends: Numbers, polygons: Numbers, statements: Statements
-) -> Numbers:
-    """The part number of each polygon, from the names in the other lines before it."""
-    numbers = np.empty(len(polygons), np.int64)
-    places = zip(starts[others].tolist(), ends[others].tolist(), strict=True)
-    lines = [b"", *(block[start:end] for start, end in places)]
-    bounds = [0, *np.searchsorted(polygons, others).tolist(), len(polygons)]
-    for line, (first, end) in zip(lines, pairwise(bounds), strict=True):
-        statements.read(line)
-        if end > first:
-            numbers[first:end] = statements.part_number
-    return numbers
+        ends = np.flatnonzero(np.frombuffer(lines, np.uint8) == ord("\n"))[self.are(kind)]
+        return text, np.diff(np.searchsorted(text.starts, ends), prepend=0)
 
 
 # Statements other than nodes and polygons: names of parts, materials, and statements that are skipped.
@@ -271,16 +265,6 @@ def _part_numbers(
 # first counts. `g` or `o` without a name ends the group. A group is a part. If its polygons have several
 # materials, each material is a part, and all but the first add the material to the name: "hood", "hood
 # chrome". Without a group the part has the name of the material, and without a material the file's name.
-
-UNUSED: Final = frozenset(
-    b"vt vn s mg maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split()
-)
-"""Statements that are ignored without being counted."""
-
-SKIPPED: Final = {b"p": "points", b"l": "lines"}
-
-MOST_SKIPPED: Final = 5
-"""Limit: kinds of skipped statements that are counted by their names."""
 
 
 class Statements:
@@ -311,9 +295,7 @@ class Statements:
 
     def read(self, line: bytes) -> None:
         """Process a line that is no node, normal or polygon."""
-        keyword, _, rest = line.replace(b"\t", b" ").strip().partition(b" ")
-        if not keyword or keyword.startswith(b"#"):
-            return
+        keyword, _, rest = line.strip().partition(b" ")
         if keyword == b"g":
             self.group = name_of(rest.split()[0]) if rest.strip() else None
         elif keyword == b"o":
@@ -322,20 +304,14 @@ class Statements:
             self.material = name_of(rest) or None
         elif keyword == b"mtllib" and rest:
             self.libraries.append(rest)
-        elif keyword not in UNUSED:
-            name = SKIPPED.get(keyword) or f"statements {shown(keyword)}"
-            is_new = name not in self.skipped and len(self.skipped) >= MOST_SKIPPED
-            self.skipped["other statements" if is_new else name] += 1
+        elif keyword and not keyword.startswith(b"#"):
+            self.skipped[{b"p": "points", b"l": "lines"}.get(keyword, "unknown statements")] += 1
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """Messages about what was skipped."""
         colors = ("left out the colors of nodes",) if self.has_colors else ()
         return (*(f"skipped {what}: {count:,}" for what, count in self.skipped.items()), *colors)
-
-
-ROWS_AT_ONCE: Final = 1 << 16
-"""Rows that become text at once, so that there are few Python values at a time."""
 
 
 def obj_text(mesh: Mesh, materials: Sequence[str] = (), library: str = "") -> bytes:
@@ -345,34 +321,73 @@ def obj_text(mesh: Mesh, materials: Sequence[str] = (), library: str = "") -> by
     Its numbers read back equal, and so does the mesh unless the reader repairs it: a polygon without area is
     dropped, parts are those of polygons and in their order, and names are printable, with no spaces around.
     """
-    return "\n".join(_lines(mesh, materials, library)).encode("utf-8", "replace") + b"\n"
-
-
-def _lines(mesh: Mesh, materials: Sequence[str], library: str) -> Iterator[str]:
-    """The lines of nodes, normals and polygons, with the name of a part wherever it changes."""
-    if library:
-        yield f"mtllib {library}"
-    for chunk in chunks(len(mesh.coordinates), ROWS_AT_ONCE):
-        for x, y, z in mesh.coordinates[chunk].tolist():
-            yield f"v {x!r} {y!r} {z!r}"
+    lines = [f"mtllib {library}"] * bool(library)
+    lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.coordinates.tolist()]
+    corners = mesh.node_numbers + 1
     own = mesh.own_normals
     if own is not None:
-        yield from (f"vn {x!r} {y!r} {z!r}" for x, y, z in own.vectors.tolist())
+        lines += [f"vn {x!r} {y!r} {z!r}" for x, y, z in own.vectors.tolist()]
     before = -1
-    for chunk in chunks(len(mesh.node_numbers), ROWS_AT_ONCE):
-        parts = mesh.part_numbers[chunk].tolist()
-        corner_rows = (mesh.node_numbers[chunk] + 1).tolist()
+    for row, part in enumerate(mesh.part_numbers.tolist()):
+        if part != before:
+            lines.append(statement("o", mesh.part_names[part]))
+            lines += [statement("usemtl", materials[part])] if materials else []
+            before = part
+        nodes = corners[row].tolist()
+        words = [str(node) for node in nodes]
         if own is not None:
-            normal_rows = (own.numbers[chunk] + 1).tolist()
-            corner_rows = [
-                [f"{node}//{normal}" if normal else str(node) for node, normal in zip(*rows, strict=True)]
-                for rows in zip(corner_rows, normal_rows, strict=True)
-            ]
-        for part, corners in zip(parts, corner_rows, strict=True):
-            if part != before:
-                yield statement("o", mesh.part_names[part])
-                if materials:
-                    yield statement("usemtl", materials[part])
-                before = part
-            a, b, c, d = corners
-            yield f"f {a} {b} {c}" if c == d else f"f {a} {b} {c} {d}"
+            numbers = (own.numbers[row] + 1).tolist()
+            words = [f"{node}//{n}" if n else node for node, n in zip(words, numbers, strict=True)]
+        lines.append(f"f {' '.join(words[:3] if nodes[2] == nodes[3] else words)}")
+    return "\n".join([*lines, ""]).encode("utf-8", "replace")
+
+
+def write_obj(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    """Write the mesh of a scene to an OBJ file, and its surfaces to a library beside it; returns both.
+
+    There is no library if one surface was created for all parts. Raises OutputError or WriteError.
+    """
+    refuse_output(path, overwrite=overwrite)
+    if [surface.name for surface in scene.surfaces] == [SHARED]:
+        write_atomically(path, obj_text(scene.mesh), overwrite=overwrite)
+        return [path]
+    library = path.with_suffix(".mtl")
+    names = material_names(surface.name for surface in scene.surfaces)
+    surface_of = {part.name: part.surface for part in scene.parts}
+    materials = [names[surface_of[part]] for part in scene.mesh.part_names]
+    data = mtl_text((names[surface.name], surface) for surface in scene.surfaces)
+    refuse_output(library, overwrite=overwrite)
+    # An old OBJ file may name the old library. The new OBJ file names a spare library until that is replaced.
+    has_old = os.path.lexists(path) and os.path.lexists(library)
+    libraries = [free_path(library), library] if has_old else [library]
+    for written in libraries:
+        was_there = os.path.lexists(written)
+        write_atomically(written, data, overwrite=overwrite)
+        try:
+            write_atomically(path, obj_text(scene.mesh, materials, written.name), overwrite=overwrite)
+        except BaseException:
+            if not was_there:
+                with suppress(OSError):
+                    os.unlink(written)
+            raise
+    if has_old:
+        os.unlink(libraries[0])
+    return [path, library]
+
+
+def material_names(surfaces: Iterable[str]) -> dict[str, str]:
+    """Unique material names for surfaces: their own names, without characters that MTL cannot hold."""
+    surfaces = list(surfaces)
+    names = [name_of(surface.encode("utf-8", "replace")) or "surface" for surface in surfaces]
+    return dict(zip(surfaces, different(names), strict=True))
+
+
+def beyond_materials(surfaces: Iterable[Surface]) -> list[str]:
+    """The names of the surfaces that a material library cannot hold whole."""
+    surface_of = {str(number): surface for number, surface in enumerate(surfaces)}
+    read_back, _ = materials_of(mtl_text(surface_of.items()), "", {*surface_of})
+    return [
+        surface.name
+        for number, surface in surface_of.items()
+        if read_back[number].replace(name=surface.name) != surface
+    ]

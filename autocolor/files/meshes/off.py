@@ -54,33 +54,23 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     text = NumberText(data, path.name)
     text.require(3, "header")
     nodes, polygons = text.wholes(0, 2, "a count in the header").tolist()
-    for at, count in enumerate((nodes, polygons)):
-        if not 1 <= count <= len(text):
-            raise text.wrong(at, f"a count must be from 1 to {len(text):,}, the count of words in the file")
     lines = text.lines()
-    lines = lines[lines > 2]
-
-    # Nodes. If they do not stand on lines of their own, they follow each other, wherever lines end.
-    first = int(lines[0]) if len(lines) else len(text)
-    size = 6 if known[3] else 3
-    width = size + 2 * (known[1] is not None)
-    text.require(first + size * nodes, "nodes")
-    begins, end = lines[:nodes], int(np.append(lines, len(text))[min(nodes, len(lines))])
-    widths = np.diff(begins, append=end)
-    if len(lines) < nodes + polygons or widths.min() < size:
-        text.require(first + width * nodes, "nodes")
-        begins, widths, end = first + width * np.arange(nodes), np.array([width]), first + width * nodes
-    table = text.vectors(begins, end, size)
-    skipped = ["left out the colors of nodes"] if (widths > width).any() else []
-
-    # Polygons.
-    lines = lines[lines >= end]
-    if len(lines) < polygons:
+    lines = np.append(lines[lines > 2], len(text))
+    if nodes < 1 or polygons < 1 or nodes + polygons >= len(lines):
         raise InputError(
-            f"{path.name}: there must be {polygons:,} lines of polygons, as the header says, not"
-            f" {len(lines):,}; correct the header or the polygons"
+            f"{path.name}: the header must count nodes and polygons, at least one, each on its own line, not"
+            f" {nodes:,} and {polygons:,} of {len(lines) - 1:,} lines; the file is cut short or its counts"
+            " are wrong"
         )
-    begins, end = lines[:polygons], int(np.append(lines, len(text))[polygons])
+    begins, end = lines[:nodes], int(lines[nodes])
+    widths = np.diff(begins, append=end)
+    size = 6 if known[3] else 3
+    if widths.min() < size:
+        raise text.wrong(int(begins[widths.argmin()]), f"the line of a node must have {size} numbers")
+    table = text.vectors(begins, end, size)
+    width = size + 2 * (known[1] is not None)
+    skipped = ["left out the colors of nodes"] if (widths > width).any() else []
+    begins, end = lines[nodes : nodes + polygons], int(lines[nodes + polygons])
     corners, counts = _polygons(text, begins, end, nodes)
     if len(corners) + polygons < end - int(begins[0]):
         skipped.append("left out the colors of polygons")
@@ -92,7 +82,6 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
         counts,
         np.zeros(polygons, np.intp),
         (path.stem,),
-        place_of=lambda row: f"line {text.line(begins[row])}",
         normals=table[:, 3:] if known[3] else None,
         corner_normals=corners if known[3] else None,
     )

@@ -16,15 +16,15 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, chunks
+from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE, listed, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.file_scalars import FileScalars
-from autocolor.files.meshes.ply_elements import ElementRows, Lists, parsed_header, read_binary, read_text
+from autocolor.files.meshes.ply_elements import ElementRows, Lists, read_elements
 from autocolor.files.meshes.repair import (
     PLAIN,
     MeshReport,
@@ -41,7 +41,7 @@ from autocolor.scene.scalar import NODE, POLYGON
 VERTEX: Final = "vertex"
 FACE: Final = "face"
 STRIPS: Final = "tristrips"
-NO_ROWS: Final = ElementRows(0, {}, str)
+NO_ROWS: Final = ElementRows(0, {})
 AXES: Final = ("x", "y", "z")
 CORNERS: Final = ("vertex_indices", "vertex_index")
 
@@ -73,15 +73,8 @@ NAMED_SCALAR: Final = re.compile(rb"scalar (\S+) (.+)")
 PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_.\-]{0,63}")
 
 
-class Comments(NamedTuple):
-    """What comments name: parts by number, and scalars by their properties."""
-
-    parts: Mapping[int, str]
-    scalars: Mapping[str, str]
-
-
-def named_in(comments: Sequence[bytes]) -> Comments:
-    """The names in comments such as `part 0 hood` and `scalar value_0 von Mises`; others say nothing."""
+def named_in(comments: Sequence[bytes]) -> tuple[dict[int, str], dict[str, str]]:
+    """The names of parts and of scalars in comments such as `part 0 hood` and `scalar value_0 von Mises`."""
     parts: dict[int, str] = {}
     scalars: dict[str, str] = {}
     for comment in comments:
@@ -89,7 +82,7 @@ def named_in(comments: Sequence[bytes]) -> Comments:
             parts.setdefault(int(match[1]), name_of(match[2]))
         elif match := NAMED_SCALAR.fullmatch(comment):
             scalars.setdefault(name_of(match[1]), name_of(match[2]))
-    return Comments(parts, scalars)
+    return parts, scalars
 
 
 def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -104,9 +97,8 @@ def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
 def _read(path: Path) -> tuple[RawPolygons, list[str]]:
     """The polygons of a file, and messages about skipped data. Returning frees the bytes of the file."""
     data = read_whole(path, GROWTH)
-    header = parsed_header(data, path.name)
-    elements, skipped = (read_binary if header.order else read_text)(data, header, path.name)
-    comments = named_in(header.comments)
+    elements, comments, skipped = read_elements(data, path.name)
+    named_parts, named = named_in(comments)
     vertices, faces = (elements.get(name, NO_ROWS) for name in (VERTEX, FACE))
     if STRIPS in elements and not faces.length:
         raise InputError(f"{path.name}: elements {STRIPS!r} are not read; export it with faces")
@@ -117,17 +109,17 @@ def _read(path: Path) -> tuple[RawPolygons, list[str]]:
         for name, rows in reversed(elements.items())
         if name not in (VERTEX, FACE) and rows.length
     ]
-    part, part_numbers, part_names = _parts(faces, comments, path.stem)
+    part, part_numbers, part_names = _parts(faces, named_parts, named, path.stem)
     scalars = FileScalars()
     for rows, of in ((vertices, NODE), (faces, POLYGON)):
         for name in rows.columns:
-            is_scalar = name in comments.scalars or not NOT_SCALAR.fullmatch(name)
+            is_scalar = name in named or not NOT_SCALAR.fullmatch(name)
             if is_scalar and not (of == POLYGON and name == part):
                 for column in _numbers(rows, [name]):
-                    scalars.add(comments.scalars.get(name, name), column, of)
-        if any(COLOR.fullmatch(name) for name in rows.columns.keys() - comments.scalars.keys()):
+                    scalars.add(named.get(name, name), column, of)
+        if any(COLOR.fullmatch(name) for name in rows.columns.keys() - named.keys()):
             messages.append(f"left out the colors of {of}s")
-    axes = _numbers(vertices, [name for name in NORMAL if name not in comments.scalars])
+    axes = _numbers(vertices, [name for name in NORMAL if name not in named])
     normals = np.stack(axes, axis=1).astype(np.float64) if len(axes) == 3 else None
     polygons = RawPolygons(
         coordinates,
@@ -136,8 +128,6 @@ def _read(path: Path) -> tuple[RawPolygons, list[str]]:
         part_numbers,
         part_names,
         scalars.scalars,
-        # Lines would keep the text of the file in memory.
-        lambda row: f"{FACE} {row}",
         normals,
         None if normals is None else corners,
     )
@@ -161,10 +151,11 @@ def _coordinates(vertices: ElementRows, place: str) -> Floats:
     with np.errstate(invalid="ignore"):
         coordinates = np.stack(axes, axis=1, dtype=np.float64, casting="unsafe")
     # A comparison with NaN is false.
-    if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
-        row, axis = np.argwhere(~(np.abs(coordinates) <= LARGEST_COORDINATE))[0].tolist()
+    wrong = np.argwhere(~(np.abs(coordinates) <= LARGEST_COORDINATE))
+    if len(wrong):
+        row, axis = wrong[0].tolist()
         raise InputError(
-            f"{vertices.place_of(row)}: a coordinate must be a finite number of at most 1e30 in size, not"
+            f"{place}, {VERTEX} {row}: a coordinate must be a finite number of at most 1e30 in size, not"
             f" {coordinates[row, axis]:g}; correct it"
         )
     return coordinates
@@ -185,39 +176,34 @@ def _corners(faces: ElementRows, nodes: int, place: str) -> tuple[Indices, Indic
             f" {_listed(faces)}; export it with polygons"
         )
     values, counts = lists
-    if len(values) and not (values.min() >= 0 and values.max() < nodes and _are_whole(values)):
+    is_node = np.ones(1, np.bool_)
+    if values.dtype.kind == "f" or (len(values) and not 0 <= values.min() <= values.max() < nodes):
         is_node = (values >= 0) & (values < nodes) & (np.floor(values) == values)
+    if not is_node.all():
         corner = int(is_node.argmin())
         row = int(np.searchsorted(np.cumsum(counts), corner, side="right"))
         raise InputError(
-            f"{faces.place_of(row)}: a corner must be the number of one of {nodes:,} nodes, from 0 on, not"
+            f"{place}, {FACE} {row}: a corner must be the number of one of {nodes:,} nodes, from 0 on, not"
             f" {values[corner]:.15g}; correct it"
         )
     return values.astype(np.intp, copy=False), counts
 
 
-def _are_whole(values: AnyArray) -> bool:
-    return values.dtype.kind != "f" or bool((values == np.floor(values)).all())
-
-
-def _parts(faces: ElementRows, comments: Comments, stem: str) -> tuple[str | None, Indices, tuple[str, ...]]:
+def _parts(
+    faces: ElementRows, named: Mapping[int, str], scalars: Mapping[str, str], stem: str
+) -> tuple[str | None, Indices, tuple[str, ...]]:
     """The face property that assigns parts, if any, the part number of each face, and the names of parts."""
     for name in PARTS:
-        columns = [] if name in comments.scalars else _numbers(faces, [name])
-        if not columns or not (np.abs(columns[0]) < LARGEST_INDEX).all() or not _are_whole(columns[0]):
-            continue
-        whole = columns[0].astype(np.int64)
-        used = set(np.unique(whole).tolist())
-        named = comments.parts if name == PART else {}
-        if len(used) <= MOST_PARTS or used <= named.keys():
-            numbers = sorted(used | named.keys())
-            names = different([named.get(number, f"{name} {number}") for number in numbers])
-            return name, np.searchsorted(numbers, whole).astype(np.intp, copy=False), names
-    names = different([comments.parts[number] for number in sorted(comments.parts)] or [stem])
+        for column in _numbers(faces, [name] if name not in scalars else []):
+            values = np.unique(column).tolist()
+            parts = named if name == PART else {}
+            is_whole = all(abs(value) < LARGEST_INDEX and value == int(value) for value in values)
+            if is_whole and (len(values) <= MOST_PARTS or parts.keys() >= set(values)):
+                numbers = sorted({*map(int, values), *parts})
+                names = different([parts.get(number, f"{name} {number}") for number in numbers])
+                return name, np.searchsorted(numbers, column).astype(np.intp, copy=False), names
+    names = different([named[number] for number in sorted(named)] or [stem])
     return None, np.zeros(faces.length, np.intp), names
-
-
-ROWS_AT_ONCE: Final = 1 << 16
 
 
 def property_of(scalar: str, number: int) -> str:
@@ -267,17 +253,15 @@ def ply_bytes(mesh: Mesh) -> bytes:
     types = [("count", "u1"), *((f"corner {at}", "<i4") for at in range(4))]
     types += [*((name, "<i4") for name in parts), *((name, "<f8") for name in of_polygons)]
     pieces = ["\n".join(lines).encode("utf-8", "replace"), node_rows.tobytes()]
-    for chunk in chunks(polygons, ROWS_AT_ONCE):
-        corners = mesh.node_numbers[chunk]
-        is_triangle = corners[:, 2] == corners[:, 3]
-        # Rows begin as quads; then the last corner of each triangle is cut out.
-        rows = np.empty(len(corners), types)
-        rows["count"] = np.where(is_triangle, 3, 4)
-        for at in range(4):
-            rows[f"corner {at}"] = corners[:, at]
-        for name, values in {**parts, **of_polygons}.items():
-            rows[name] = values[chunk]
-        is_written = np.ones((len(rows), rows.itemsize), np.bool_)
-        is_written[is_triangle, 13:17] = False
-        pieces.append(rows.view(np.uint8).reshape(is_written.shape)[is_written].tobytes())
+    is_triangle = mesh.node_numbers[:, 2] == mesh.node_numbers[:, 3]
+    # Rows begin as quads; then the last corner of each triangle is cut out.
+    rows = np.empty(polygons, types)
+    rows["count"] = np.where(is_triangle, 3, 4)
+    for at, corners in enumerate(mesh.node_numbers.T):
+        rows[f"corner {at}"] = corners
+    for name, values in {**parts, **of_polygons}.items():
+        rows[name] = values
+    is_written = np.ones((polygons, rows.itemsize), np.bool_)
+    is_written[is_triangle, 13:17] = False
+    pieces.append(rows.view(np.uint8).reshape(is_written.shape)[is_written].tobytes())
     return b"".join(pieces)

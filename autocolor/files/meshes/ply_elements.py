@@ -9,69 +9,34 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Callable, Mapping
+from contextlib import suppress
 from itertools import islice
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Booleans, Floats, Indices, runs
+from autocolor.arrays import AnyArray, Booleans, Indices, runs
 from autocolor.checks import listed
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import name_of
-from autocolor.files.reading import HEAD, shown, text_problem
-
-LARGEST_HEADER: Final = 16 << 20
-"""Limit: in bytes; a comment for each of a hundred thousand parts."""
-
-CUT_SHORT: Final = "the file is cut short or its header is wrong, export it again"
+from autocolor.files.reading import HEAD, shown, text_lines, text_problem
 
 ORDERS: Final = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
 """The byte order of numbers in each format; none in text."""
 
-WHOLES: Final = {
-    b"char": "i1", b"uchar": "u1", b"short": "i2", b"ushort": "u2", b"int": "i4", b"uint": "u4",
-    b"int8": "i1", b"uint8": "u1", b"int16": "i2", b"uint16": "u2", b"int32": "i4", b"uint32": "u4",
-    b"int64": "i8", b"uint64": "u8",
+TYPES: Final = {
+    b"char": "b", b"uchar": "B", b"short": "h", b"ushort": "H", b"int": "i", b"uint": "I",
+    b"int8": "b", b"uint8": "B", b"int16": "h", b"uint16": "H", b"int32": "i", b"uint32": "I",
+    b"int64": "q", b"uint64": "Q",
+    b"float": "f", b"double": "d", b"float32": "f", b"float64": "d",
 }  # fmt: skip
-"""The types of whole numbers in a header, as numpy's. PLY has none of 64 bits, but some files do."""
-
-TYPES: Final = {**WHOLES, b"float": "f4", b"double": "f8", b"float32": "f4", b"float64": "f8"}
-
-CODES: Final = {"i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I", "i8": "q", "u8": "Q"}
-"""The types of counts as `struct` has them."""
+"""The letters of the types, in `struct` and numpy. PLY has no whole numbers of 64 bits, but some files do."""
 
 FIRST_LINE: Final = re.compile(rb"ply[ \t]*(\r?\n|\r)")
 
-
-class Property(NamedTuple):
-    """A property: its type and, for a list, the type of its count, in numpy's words."""
-
-    type: str
-    count_type: str | None = None
-
-    @property
-    def size(self) -> int:
-        """The bytes in a binary file of a value, or of the count of a list."""
-        return int((self.count_type or self.type)[1])
-
-
-class Element(NamedTuple):
-    """How many rows an element has, and their properties by name."""
-
-    rows: int
-    properties: dict[str, Property]
-
-
-class PlyHeader(NamedTuple):
-    """A header: the byte order, empty for text; the elements by name; the comments; its bytes and lines."""
-
-    order: str
-    elements: Mapping[str, Element]
-    comments: tuple[bytes, ...]
-    length: int
-    lines: int
+Properties = dict[str, tuple[str, ...]]
+"""The types of an element's properties by their names: two for a list, that of its count first."""
 
 
 def begins_as_ply(head: bytes) -> bool:
@@ -79,8 +44,11 @@ def begins_as_ply(head: bytes) -> bool:
     return FIRST_LINE.match(head) is not None
 
 
-def parsed_header(data: bytes, place: str) -> PlyHeader:
-    """The header at the start of a file; `place` is its name in messages. Raises InputError."""
+def _header(data: bytes, place: str) -> tuple[str, dict[str, tuple[int, Properties]], list[bytes], int]:
+    """The byte order, the count of rows and the properties of each element, the comments, and the length.
+
+    Raises InputError.
+    """
     if problem := text_problem(data[:2]):
         raise InputError(f"{place}: a PLY file {problem}")
     first = FIRST_LINE.match(data)
@@ -89,19 +57,15 @@ def parsed_header(data: bytes, place: str) -> PlyHeader:
         raise InputError(f"{place}: a PLY file must begin with a line 'ply', not {found}; export it again")
     # A line that ends with CR may be followed by binary data that begins with LF.
     feed = b"\r" if first[1] == b"\r" else b"\r?\n"
-    end = re.search(rb"[\r\n][ \t]*end_header[ \t]*(?:" + feed + rb"|\Z)", data[:LARGEST_HEADER])
+    end = re.search(rb"[\r\n][ \t]*end_header[ \t]*(?:" + feed + rb"|\Z)", data)
     if end is None:
-        raise InputError(
-            f"{place}: a header must have a line 'end_header' within {LARGEST_HEADER:,} bytes; export it"
-            " again"
-        )
+        raise InputError(f"{place}: a header must have a line 'end_header', not none; export it again")
     order: str | None = None
-    elements: dict[str, Element] = {}
-    # The properties of the last element; none can stand before the first element.
-    properties: dict[str, Property] | None = None
+    elements: dict[str, tuple[int, Properties]] = {}
     comments = []
-    lines = data[: end.end()].splitlines()
-    for number, line in enumerate(lines[1:-1], start=2):
+    for number, line in enumerate(data[: end.end()].splitlines()[1:-1], start=2):
+        # Properties are of the last element.
+        properties = next((each for _, each in reversed(elements.values())), None)
         match line.split():
             case [] | [b"obj_info", *_]:
                 pass
@@ -112,12 +76,11 @@ def parsed_header(data: bytes, place: str) -> PlyHeader:
             case [b"element", name, count] if (
                 count.isdigit() and len(count) < 19 and name_of(name) not in elements
             ):
-                properties = {}
-                elements[name_of(name)] = Element(int(count), properties)
+                elements[name_of(name)] = int(count), {}
             case [b"property", *kinds, name] if (
-                properties is not None and name_of(name) not in properties and (kind := _property(kinds))
+                properties is not None and name_of(name) not in properties and (types := _types(kinds))
             ):
-                properties[name_of(name)] = kind
+                properties[name_of(name)] = types
             case _:
                 raise InputError(
                     f"{place}, line {number}: a line of the header must be a format, a comment, an element"
@@ -126,17 +89,17 @@ def parsed_header(data: bytes, place: str) -> PlyHeader:
                 )
     if order is None:
         raise InputError(f"{place}: a header must have a line 'format', not none; export it again")
-    return PlyHeader(order, elements, tuple(comments), end.end(), len(lines))
+    return order, elements, comments, end.end()
 
 
-def _property(kinds: list[bytes]) -> Property | None:
-    """The property of the words before its name, TYPE or `list` COUNT_TYPE TYPE; None for other words."""
+def _types(kinds: list[bytes]) -> tuple[str, ...]:
+    """The types in the words before the name of a property, `TYPE` or `list COUNT TYPE`; or none."""
     match kinds:
         case [kind] if kind in TYPES:
-            return Property(TYPES[kind])
-        case [b"list", count, kind] if count in WHOLES and kind in TYPES:
-            return Property(TYPES[kind], WHOLES[count])
-    return None
+            return (TYPES[kind],)
+        case [b"list", count, kind] if TYPES.get(count, "f") not in "fd" and kind in TYPES:
+            return TYPES[count], TYPES[kind]
+    return ()
 
 
 class Lists(NamedTuple):
@@ -146,200 +109,139 @@ class Lists(NamedTuple):
     counts: Indices
 
 
-Column = AnyArray | Lists
+Columns = dict[str, AnyArray | Lists]
 
 
 class ElementRows(NamedTuple):
-    """The columns of an element by the names of its properties; `place_of` tells where a row is."""
+    """How many rows an element has, and its columns by the names of its properties."""
 
     length: int
-    columns: dict[str, Column]
-    place_of: Callable[[int], str]
+    columns: Columns
 
 
-def read_binary(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], tuple[str, ...]]:
-    """The elements of a file by name, and a message if bytes follow the last element.
-
-    `place` is the file's name in messages. Raises InputError if the file is cut short.
-    """
-    at = header.length
-    elements: dict[str, ElementRows] = {}
-    for name, element in header.elements.items():
-        try:
-            columns, at = _even_columns(data, at, element, header.order) or _uneven_columns(
-                data, at, element, header.order
-            )
-        except _CutShortError:
-            raise InputError(
-                f"{place}: {element.rows:,} elements {name!r} must end within the file, with lists of 0 or"
-                f" more values; {CUT_SHORT}"
-            ) from None
-
-        def place_of(row: int, name: str = name) -> str:
-            return f"{place}, {name} {row}"
-
-        elements[name] = ElementRows(element.rows, columns, place_of)
-    left = len(data) - at
-    return elements, (f"skipped bytes after the last element: {left:,}",) if left else ()
+class _WrongRowError(Exception):
+    """A row of an element has other values than the header says, or ends after the file."""
 
 
-class _CutShortError(Exception):
-    """The rows of an element do not end within the file."""
-
-
-def _even_columns(data: bytes, at: int, element: Element, order: str) -> tuple[dict[str, Column], int] | None:
-    """The columns of an element that begins at a byte, and where the next one begins.
-
-    None if the rows are not all as long as the first.
-    """
-    rows = element.rows
-    if not rows:
-        return None
-    counts, end = _walked(data, at, element._replace(rows=1), order)
-    size, lengths = end - at, iter(counts[:, 0].tolist())
-    if rows * size > len(data) - at:
-        return None
-    end = at + rows * size
-    columns: dict[str, Column] = {}
-    for name, each in element.properties.items():
-        columns[name] = np.ndarray((rows,), order + (each.count_type or each.type), data, at, (size,))
-        at += each.size
-        if each.count_type:
-            length, width = next(lengths), int(each.type[1])
-            if (columns[name] != length).any():
-                return None
-            values = np.ndarray((rows, length), order + each.type, data, at, (size, width))
-            columns[name] = Lists(values.astype(each.type).ravel(), np.full(rows, length))
-            at += length * width
-    return columns, end
-
-
-def _uneven_columns(data: bytes, at: int, element: Element, order: str) -> tuple[dict[str, Column], int]:
-    """The same for rows of any sizes."""
-    counts, end = _walked(data, at, element, order)
-    lists = [each for each in element.properties.values() if each.count_type]
-    sizes = np.full(element.rows, sum(each.size for each in element.properties.values()))
-    for count, each in zip(counts, lists, strict=True):
-        sizes += count * int(each.type[1])
-    # The place of the next property in each row.
-    places = at + np.cumsum(sizes) - sizes
-    lengths = iter(counts)
-    columns: dict[str, Column] = {}
-
-    def numbers(places: Indices, code: str) -> AnyArray:
-        everywhere = np.ndarray((len(data) - int(code[1]) + 1,), order + code, data, strides=(1,))
-        return everywhere[places]
-
-    for name, each in element.properties.items():
-        if each.count_type is None:
-            columns[name] = numbers(places, each.type)
-            places += each.size
-        else:
-            count, width = next(lengths), int(each.type[1])
-            places += each.size
-            filled = np.flatnonzero(count)
-            items = runs(places[filled], count[filled], np.full(len(filled), width))
-            columns[name] = Lists(numbers(items, each.type), count)
-            places += count * width
-    return columns, end
-
-
-def _walked(data: bytes, at: int, element: Element, order: str) -> tuple[Indices, int]:
-    """The counts of the lists of an element that begins at a byte, (lists, rows), and where it ends."""
-    if element.rows * sum(each.size for each in element.properties.values()) > len(data) - at:
-        raise _CutShortError
-    # For each list of a row: the bytes from the list before it to its values, how to read its count, where
-    # the count is, and the bytes of a value.
-    lists, tail = [], 0
-    for each in element.properties.values():
-        if each.count_type:
-            unpack = struct.Struct(order + CODES[each.count_type]).unpack_from
-            lists.append((tail + each.size, unpack, tail, int(each.type[1])))
-        tail = 0 if each.count_type else tail + each.size
-    if not lists:
-        return np.empty((0, element.rows), np.intp), at + element.rows * tail
-    some: list[int] = []
-    try:
-        if [each.count_type for each in element.properties.values() if each.count_type] == ["u1"]:
-            # Measured: a third of the time of the general case below.
-            head, _, before, width = lists[0]
-            for _ in range(element.rows):
-                count = data[at + before]
-                some.append(count)
-                at += head + count * width + tail
-        for _ in range(0 if some else element.rows):
-            for head, unpack, before, width in lists:
-                (count,) = unpack(data, at + before)
-                some.append(count)
-                at += head + count * width
-            at += tail
-        counts = np.array(some, np.intp).reshape(-1, len(lists)).T
-    except (IndexError, OverflowError, struct.error):
-        raise _CutShortError from None
-    if at > len(data) or counts.min(initial=0) < 0:
-        raise _CutShortError
-    return np.ascontiguousarray(counts), at
-
-
-def read_text(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], tuple[str, ...]]:
-    """The elements of a file by name, and a message if lines follow the last element.
+def read_elements(data: bytes, place: str) -> tuple[dict[str, ElementRows], list[bytes], list[str]]:
+    """The elements of a file by name, its comments, and a message if bytes or lines follow the last element.
 
     `place` is the file's name in messages. Raises InputError.
     """
-    if problem := text_problem(data):
-        raise InputError(f"{place}: an ascii PLY file {problem}")
-    body = data[header.length :].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    # Empty lines stand for the header, so that line numbers are those of the file.
-    text = NumberText(b"\n" * header.lines + body, place)
-    firsts = text.lines()
-    numbers = text.values(0, len(text))
-    ends = np.append(firsts[1:], len(text))
+    order, declared, comments, at = _header(data, place)
     elements: dict[str, ElementRows] = {}
-    row = 0
-    for name, element in header.elements.items():
-        begins = firsts[row : row + element.rows]
-        if len(begins) < element.rows:
+    end, text = len(data), None
+    if not order:
+        # The header is left blank, so that line numbers are those of the file.
+        below = re.sub(rb"[^\r\n]", b" ", data[:at]) + data[at:]
+        text = NumberText(text_lines(below, place, "an ascii PLY file"), place)
+        numbers = text.values(0, len(text)).data
+        lines = np.append(text.lines(), len(text))
+        at, end = 0, len(lines) - 1
+    for name, (rows, properties) in declared.items():
+        try:
+            if rows > end - at:
+                raise _WrongRowError
+            if text is None:
+                columns, at = _binary_columns(data, at, rows, properties, order)
+            else:
+                bounds = lines[at : at + rows + 1]
+                doubles = {each: ("d",) * len(types) for each, types in properties.items()}
+                columns = _columns(doubles, bounds * 8, numbers, "=")
+                at += rows
+        except _WrongRowError as error:
+            if text is None or not error.args:
+                raise InputError(
+                    f"{place}: {rows:,} elements {name!r} must end within the file, with lists of 0 or more"
+                    " values; the file is cut short or its header is wrong, export it again"
+                ) from None
+            line = text.line(int(bounds[error.args[0]]))
             raise InputError(
-                f"{place}: there must be {element.rows:,} elements {name!r}, not {len(begins):,}; {CUT_SHORT}"
-            )
-
-        def place_of(at: int, begins: Indices = begins) -> str:
-            return f"{place}, line {text.line(int(begins[at]))}"
-
-        columns, is_right = _text_columns(numbers, begins, ends[row : row + element.rows], element)
-        if not is_right.all():
-            properties = listed([*islice(element.properties, 8)] or ["none"])
-            raise InputError(
-                f"{place_of(int(is_right.argmin()))}: a line of an element {name!r} must have the values of"
-                f" {properties}, with the count before each list, and no others; correct it"
-            )
-        elements[name] = ElementRows(element.rows, columns, place_of)
-        row += element.rows
-    more = len(firsts) - row
-    return elements, (f"skipped lines after the last element: {more:,}",) if more else ()
+                f"{place}, line {line}: a line of an element {name!r} must have the values of"
+                f" {listed([*islice(properties, 8)] or ['none'])}, with the count before each list, and no"
+                " others; correct it"
+            ) from None
+        elements[name] = ElementRows(rows, columns)
+    unit = "bytes" if text is None else "lines"
+    skipped = [f"skipped {unit} after the last element: {end - at:,}"] if at < end else []
+    return elements, comments, skipped
 
 
-def _text_columns(
-    numbers: Floats, begins: Indices, ends: Indices, element: Element
-) -> tuple[dict[str, Column], Booleans]:
-    """The columns of an element whose rows begin and end at some numbers, and which of the rows are right.
+def _binary_columns(
+    data: bytes, at: int, rows: int, properties: Properties, order: str
+) -> tuple[Columns, int]:
+    """The columns of an element that begins at a byte, and where it ends. Raises _WrongRowError."""
+    with suppress(ValueError):
+        return _alike(data, at, rows, properties, order)
+    # For each list of a row: what stands between the list before it and its values, and the bytes of a value.
+    lists, tail = [], order
+    for first, *kind in properties.values():
+        tail += first
+        if kind:
+            lists.append((struct.Struct(tail), struct.calcsize(order + kind[0])))
+            tail = order
+    bounds = [at]
+    try:
+        for _ in range(rows):
+            for head, width in lists:
+                at += head.size + head.unpack_from(data, at)[-1] * width
+            at += struct.calcsize(tail)
+            bounds.append(at)
+    except (struct.error, OverflowError):
+        raise _WrongRowError from None
+    if at > len(data):
+        raise _WrongRowError
+    return _columns(properties, np.array(bounds), data, order), at
 
-    Where a row is wrong, the columns end.
+
+def _alike(data: bytes, at: int, rows: int, properties: Properties, order: str) -> tuple[Columns, int]:
+    """As `_binary_columns`, if each list has as many values in all rows. Raises ValueError otherwise."""
+    fields: list[tuple[str, str] | tuple[str, str, tuple[int]]] = []
+    for number, (first, *kind) in enumerate(properties.values()):
+        fields.append((f"{number}", order + first))
+        if kind:
+            count = np.frombuffer(data, fields, 1, at)[f"{number}"][0]
+            fields.append((f"list {number}", order + kind[0], (int(count),)))
+    table = np.frombuffer(data, fields, rows, at)
+    columns: Columns = {}
+    for number, (name, types) in enumerate(properties.items()):
+        columns[name] = values = np.ascontiguousarray(table[f"{number}"])
+        if len(types) > 1:
+            if (values != values[0]).any():
+                raise ValueError
+            columns[name] = Lists(table[f"list {number}"].ravel(), values.astype(np.intp))
+    return columns, at + table.nbytes
+
+
+def _columns(properties: Properties, bounds: Indices, data: bytes | memoryview, order: str) -> Columns:
+    """The columns of an element, whose numbers have a byte order. Raises _WrongRowError with a row.
+
+    `bounds` are the bytes where the rows begin, and where the last one ends.
     """
-    columns: dict[str, Column] = {}
-    at = begins.copy()
-    for name, each in element.properties.items():
-        is_right = at < ends
+
+    def values(places: Indices, kind: str) -> AnyArray:
+        """The values of a type at some places."""
+        most = memoryview(data).nbytes - struct.calcsize(f"={kind}") + 1
+        return np.ndarray((max(most, 0),), order + kind, data, strides=(1,))[places]
+
+    def require(is_right: Booleans) -> None:
         if not is_right.all():
-            return columns, is_right
-        columns[name] = values = numbers[at]
-        at += 1
-        if each.count_type:
-            is_right = (values >= 0) & (values <= ends - at) & (values == np.floor(values))
-            if not is_right.all():
-                return columns, is_right
-            count = values.astype(np.intp)
-            filled = count > 0
-            columns[name] = Lists(numbers[runs(at[filled], count[filled])], count)
-            at += count
-    return columns, at == ends
+            raise _WrongRowError(int(is_right.argmin()))
+
+    columns: Columns = {}
+    at, ends = bounds[:-1].copy(), bounds[1:]
+    for name, (first, *kind) in properties.items():
+        width = struct.calcsize(f"={first}")
+        require(at + width <= ends)
+        columns[name] = counts = values(at, first)
+        at += width
+        if kind:
+            width = struct.calcsize(f"={kind[0]}")
+            require((counts >= 0) & (counts <= (ends - at) // width) & (counts == np.floor(counts)))
+            counts = counts.astype(np.intp)
+            filled = np.flatnonzero(counts)
+            places = runs(at[filled], counts[filled], np.full(len(filled), width))
+            columns[name] = Lists(values(places, kind[0]), counts)
+            at += counts * width
+    require(at == ends)
+    return columns

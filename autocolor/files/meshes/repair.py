@@ -12,13 +12,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, chunks, cross, dot, lengths, underflowing, used_rows
+from autocolor.arrays import Booleans, Floats, Indices, chunks, cross, dot, underflowing, used_rows
 from autocolor.checks import printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.file_normals import file_normals
@@ -87,8 +87,7 @@ class RawPolygons:
 
     `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
     after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
-    element for each polygon. `scalars` belong to nodes or polygons. `place_of` tells where in the file a
-    polygon is, such as "line 7".
+    element for each polygon. `scalars` belong to nodes or polygons.
 
     `normals`, (normals, 3) float64, are the file's own, of any length, in the axes of the file;
     `corner_normals` has a row of `normals` for each of `corners`, or -1 where the file has none. Both are
@@ -101,7 +100,6 @@ class RawPolygons:
     part_numbers: Indices
     part_names: tuple[str, ...]
     scalars: tuple[MeshScalar, ...] = ()
-    place_of: Callable[[int], str] = lambda row: f"polygon {row + 1}"
     normals: Floats | None = None
     corner_normals: Indices | None = None
 
@@ -127,14 +125,6 @@ FLAT: Final = 1e-12
 """Assumed: a triangle has no area if twice its area is below this fraction of the squared polygon size."""
 
 
-LEAST_AREA: Final = 16 * (10 * FLAT) ** 2
-"""A triangle surely has area if its cross product, squared, exceeds this fraction of the fourth power of its
-longer edge. The size of a polygon is at most twice the distance from its first corner to another."""
-
-LEAST_SQUARE: Final = 1e-250
-"""Squares below this have lost digits."""
-
-
 @underflowing
 def repaired(
     polygons: RawPolygons,
@@ -149,12 +139,10 @@ def repaired(
     `place` is the file's name in messages; `skipped` are messages to put before those of the repairs. With
     `unused_nodes`, nodes that no polygon uses are kept. Raises InputError if no polygon is left.
     """
-    large = np.flatnonzero(polygons.corner_counts > MOST_CORNERS)
-    if len(large):
-        row = int(large[0])
+    if (most := int(polygons.corner_counts.max(initial=0))) > MOST_CORNERS:
         raise InputError(
-            f"{place}, {polygons.place_of(row)}: a polygon must have at most {MOST_CORNERS:,} corners, not"
-            f" {int(polygons.corner_counts[row]):,}; split it"
+            f"{place}, polygon {polygons.corner_counts.argmax() + 1:,}: a polygon must have at most"
+            f" {MOST_CORNERS:,} corners, not {most:,}; split it"
         )
     coordinates = placed(polygons.coordinates, placement)
     repairs = list(skipped)
@@ -162,12 +150,15 @@ def repaired(
     if placement.normals == FILE and polygons.normals is not None:
         normals = polygons.corner_normals
     counts = polygons.corner_counts
-    differs = _differ_from_next(corners, counts)
+    # The first corner of a polygon follows its last one.
+    following = np.arange(1, len(corners) + 1)
+    ends = np.cumsum(counts)
+    following[ends[counts > 0] - 1] = (ends - counts)[counts > 0]
+    differs = corners != corners[following]
     if not differs.all():
         owners = np.repeat(np.arange(len(counts)), counts)
         counts = np.bincount(owners[differs], minlength=len(counts))
         corners, normals = corners[differs], None if normals is None else normals[differs]
-    too_few = counts < 3
     try:
         if normals is None:
             node_numbers, owners = split_polygons(coordinates, corners, counts)
@@ -187,18 +178,13 @@ def repaired(
         normals = None if normals is None else normals[has_area]
     is_kept = np.zeros(len(counts), np.bool_)
     is_kept[owners] = True
-    kinds = (
-        ((counts < polygons.corner_counts) & ~too_few & is_kept, "{} with repeated corners {} repaired"),
-        (too_few, "{} with fewer than three different corners {} dropped"),
-        (~too_few & ~is_kept, "{} without area {} dropped"),
-        ((counts > 4) & is_kept, "{} with more than four corners {} split"),
-    )
-    for repaired_polygons, sentence in kinds:
-        if count := int(repaired_polygons.sum()):
-            repairs.append(_counted(sentence, "polygon", count))
-            if not len(node_numbers):
-                where = polygons.place_of(int(repaired_polygons.argmax()))
-                repairs[-1] += f" ({where})" if count == 1 else f" (the first: {where})"
+    kinds = {
+        "polygon with repeated corners {} repaired": (counts < polygons.corner_counts) & is_kept,
+        "polygon with fewer than three different corners {} dropped": counts < 3,
+        "polygon without area {} dropped": (counts >= 3) & ~is_kept,
+        "polygon with more than four corners {} split": (counts > 4) & is_kept,
+    }
+    repairs += [_counted(sentence, count) for sentence, rows in kinds.items() if (count := int(rows.sum()))]
     if not len(node_numbers):
         causes = "".join(f"; {repair}" for repair in repairs)
         raise InputError(f"{place}: a mesh must have a polygon with area, not none{causes}; add polygons")
@@ -207,7 +193,7 @@ def repaired(
     dropped = 0 if unused_nodes else int(np.count_nonzero(~is_used))
     if dropped:
         rows_of[NODE] = np.flatnonzero(is_used)
-        repairs.append(_counted("{} that no polygon uses {} dropped", "node", dropped))
+        repairs.append(_counted("node that no polygon uses {} dropped", dropped))
         coordinates = coordinates[rows_of[NODE]]
         node_numbers = (np.cumsum(is_used) - 1)[node_numbers]
     own_normals = None
@@ -231,62 +217,34 @@ def repaired(
     return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
 
 
-def _counted(sentence: str, noun: str, count: int) -> str:
-    """A sentence with the count of a noun and its verb."""
-    return sentence.format(f"{count:,} {noun}{'s' * (count > 1)}", "was" if count == 1 else "were")
-
-
-def _differ_from_next(corners: Indices, counts: Indices) -> Booleans:
-    """Which corners differ from the next corner of their polygon; the first one follows the last one."""
-    following = np.arange(1, len(corners) + 1)
-    ends = np.cumsum(counts)
-    filled = counts > 0
-    following[ends[filled] - 1] = (ends - counts)[filled]
-    differ: Booleans = corners != corners[following]
-    return differ
+def _counted(sentence: str, count: int) -> str:
+    """The sentence with the count before the noun that it begins with, and its verb."""
+    noun, _, rest = sentence.partition(" ")
+    return f"{count:,} {noun}{'s' * (count > 1)} {rest.format('was' if count == 1 else 'were')}"
 
 
 def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
     """Whether each polygon of (n, 4) has area: neither diagonal splits it into two flat triangles.
 
-    A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none.
-    Measured: a quick test first, and a close look at the polygons that it leaves, take a third of the time
-    for triangles and two thirds for quads.
+    A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none. The
+    size of a polygon is its longest edge or diagonal from the first corner; one below 1e-70 has no area.
     """
     first, *others = (coordinates.take(corners, axis=0).T for corners in node_numbers.T)
     one, two, three = (other - first for other in others)
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         squares = np.maximum(np.maximum(dot(one, one), dot(two, two)), dot(three, three))
-        least = np.maximum(LEAST_AREA * squares * squares, LEAST_SQUARE)
+        least = (FLAT * squares) ** 2
 
-        def is_far_from_flat(other: Floats) -> Booleans:
-            normals = cross(one, other)
-            is_far: Booleans = dot(normals, normals) > least
-            return is_far
+        def is_large(edge: Floats, other: Floats) -> Booleans:
+            normals = cross(edge, other)
+            is_over: Booleans = dot(normals, normals) > least
+            return is_over
 
-        have_area = is_far_from_flat(two)
+        have_area = is_large(one, two)
         if (node_numbers[:, 2] != node_numbers[:, 3]).any():
-            have_area &= is_far_from_flat(three)
-    left = np.flatnonzero(~have_area)
-    if len(left):
-        have_area[left] = ~_are_flat(coordinates[node_numbers[left]])
+            have_area |= is_large(two, three)
+            have_area &= is_large(one, three) | is_large(two - one, three - one)
     return have_area
-
-
-def _are_flat(corners: Floats) -> Booleans:
-    """Whether each polygon of (n, 4, 3) has no area."""
-    rows = np.ascontiguousarray(corners.T)
-    size = np.ptp(rows, axis=1).max(axis=0)
-    size[size == 0] = 1.0
-    scaled = (rows - rows[:, :1]) / size
-
-    def flat(first: int, second: int, third: int) -> Booleans:
-        one, other = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
-        is_flat: Booleans = lengths(cross(one, other)) < FLAT
-        return is_flat
-
-    are_flat: Booleans = (flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3))
-    return are_flat
 
 
 LONGEST_NAME: Final = 200

@@ -10,16 +10,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from itertools import chain
+from itertools import cycle
 from pathlib import Path
 from typing import Final, NoReturn
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, Singles, chunks, cross, normalized, underflowing
+from autocolor.arrays import AnyArray, Floats, Indices, Singles, underflowing
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import COORDINATE, D_TO_E, decimal
+from autocolor.files.meshes.number_text import decimal, parsed
 from autocolor.files.meshes.repair import (
     PLAIN,
     MeshReport,
@@ -31,6 +31,7 @@ from autocolor.files.meshes.repair import (
 )
 from autocolor.files.meshes.welding import welded
 from autocolor.files.reading import UTF_8_MARK, read_whole, shown, text_lines
+from autocolor.scene.geometry.normals import polygon_normals
 from autocolor.scene.mesh import Mesh
 
 GROWTH: Final = 6
@@ -39,7 +40,6 @@ GROWTH: Final = 6
 BEGINNING: Final = re.compile(rb"\s*+(?:(?:[#;!]|//)[^\r\n]*+\s*+)*+solid\b", re.IGNORECASE)
 """A solid in text, after empty lines and comments."""
 
-IN_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
 FACET_WORDS: Final = re.compile(rb"[\r\n]\s*facet\s+(?:normal|outer)\s", re.IGNORECASE)
 
 
@@ -57,17 +57,16 @@ def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
         np.full(len(rows) // 3, 3, np.intp),
         part_numbers,
         names,
-        place_of=lambda row: f"facet {row + 1}",
     )
     del points, rows
-    return repaired(polygons, path.name, placement, skipped=skipped)
+    return repaired(polygons, path.name, placement, skipped=tuple(skipped))
 
 
-def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[str, ...]]:
+def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], list[str]]:
     """The corners of the triangles, (corners, 3), their part numbers, the names of parts, and messages."""
     data = read_whole(path, GROWTH)
-    is_text = data[:2] in IN_UTF_16 or (BEGINNING.match(data) is not None and b"\0" not in data[:84])
-    if is_text and len(data) != _binary_size(data):
+    is_text = BEGINNING.match(data) is not None and b"\0" not in data[:BEFORE_TRIANGLES]
+    if (is_text or data[:2] in (b"\xff\xfe", b"\xfe\xff")) and len(data) != _binary_size(data):
         return read_text(text_lines(data, path.name, "an ascii STL file"), path.name, path.stem)
     corners, messages = read_binary(data, path.name)
     return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), messages
@@ -90,7 +89,7 @@ def _binary_size(data: bytes) -> int:
     return BEFORE_TRIANGLES + TRIANGLE.itemsize * count
 
 
-def read_binary(data: bytes, place: str) -> tuple[Singles, tuple[str, ...]]:
+def read_binary(data: bytes, place: str) -> tuple[Singles, list[str]]:
     """The corners of the triangles, (corners, 3), and messages about what was skipped.
 
     `place` is the file's name in messages. Raises InputError if the file is cut short, or about a triangle
@@ -113,51 +112,31 @@ def read_binary(data: bytes, place: str) -> tuple[Singles, tuple[str, ...]]:
             f" not {corners[row, axis]:g}; correct it"
         )
     left = len(data) - size
-    return corners, (f"skipped bytes after the last triangle: {left:,}",) if left else ()
+    return corners, [f"skipped bytes after the last triangle: {left:,}"] if left else []
 
-
-TITLE: Final = b"binary STL, written by autocolor"
-"""The beginning of a file that is written; it must not be the word `solid`."""
-
-POLYGONS_AT_ONCE: Final = 1 << 16
 
 TRIANGLES_OF: Final = np.array([[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]], [[0, 1, 2], [0, 0, 0]]])
 """The corners of the triangles of a polygon, by the corner where its diagonal begins (see `Diagonals`)."""
 
 
+@underflowing
 def stl_bytes(mesh: Mesh) -> bytes:
     """The mesh as a binary STL file: its triangles, and two triangles for each quad.
 
     A quad is cut along its diagonal of `Mesh.diagonals`, which is the shorter one in most quads. Coordinates
     are rounded to float32. The normals are unit vectors by the right-hand rule, 0 for triangles without area.
     """
-    starts = mesh.diagonals.starts
-    pieces = [b""]
-    count = 0
-    for chunk in chunks(len(starts), POLYGONS_AT_ONCE):
-        at = TRIANGLES_OF[starts[chunk]].reshape(-1, 6)
-        triangles = np.take_along_axis(mesh.node_numbers[chunk], at, axis=1).reshape(-1, 3)
-        # Leave out triangles that repeat a corner.
-        triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-        pieces.append(_records(mesh.coordinates[triangles]).tobytes())
-        count += len(triangles)
-    pieces[0] = TITLE.ljust(BEFORE_TRIANGLES - 4) + count.to_bytes(4, "little")
-    return b"".join(pieces)
-
-
-@underflowing
-def _records(corners: Floats) -> AnyArray:
-    """The records of triangles with these corners, (triangles, 3, 3)."""
-    records = np.zeros(len(corners), TRIANGLE)
-    records["corners"] = corners
+    at = TRIANGLES_OF[mesh.diagonals.starts].reshape(-1, 6)
+    triangles = np.take_along_axis(mesh.node_numbers, at, axis=1).reshape(-1, 3)
+    # Leave out triangles that repeat a corner.
+    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+    records = np.zeros(len(triangles), TRIANGLE)
+    records["corners"] = mesh.coordinates[triangles]
     # The normals fit the corners in the file, so that a file that is read is written again the same.
-    corners = records["corners"].astype(np.float64)
-    edges = np.moveaxis(corners[:, 1:] - corners[:, :1], 0, 2)
-    # Unit size keeps the products of very small edges from underflow.
-    sizes = np.abs(edges).max(axis=(0, 1), initial=0)
-    sizes[sizes == 0] = 1.0
-    records["normal"] = normalized(cross(*(edges / sizes))).T
-    return records
+    records["normal"] = polygon_normals(records["corners"][:, [0, 1, 2, 2]].T.astype(np.float64)).T
+    # The text must not begin with the word `solid`.
+    begin = b"binary STL, written by autocolor".ljust(BEFORE_TRIANGLES - 4)
+    return begin + len(records).to_bytes(4, "little") + records.tobytes()
 
 
 # In text, solids are parts:
@@ -174,7 +153,8 @@ def _records(corners: Floats) -> AnyArray:
 #
 # Words may be in capitals, and lines broken anywhere but in the names of solids. Other programs write `end
 # loop`, a `facet` without its normal, lines of colors and comments, numbers with the exponent D, or no
-# `endsolid`. Such a file is brought to the form above, and its lines keep their numbers.
+# `endsolid`. Facets outside of solids are a part named after the file. Habits are brought to the form above,
+# and lines keep their numbers.
 
 BLOCK: Final = 1 << 21
 """Bytes converted at a time."""
@@ -182,130 +162,90 @@ BLOCK: Final = 1 << 21
 SOLID: Final = re.compile(rb"^[ \t]*(end[ \t]*)?solid\b([^\n]*)$", re.MULTILINE | re.IGNORECASE)
 ENDFACET: Final = re.compile(rb"end[ \t]*facet\s", re.IGNORECASE)
 
-HABITS: Final = re.compile(
-    rb"\bend[ \t]+(?P<end>loop|facet)\b"
-    rb"|\bfacet(?P<normal>\s+(?:normal\s+)?)(?=outer\b)"
-    rb"|(?:#|;|!|//|^[ \t]*colou?r\b)[^\n]*",
-    re.MULTILINE | re.IGNORECASE,
+HABITS: Final = (
+    (re.compile(rb"(?:#|;|!|//|^[ \t]*colou?r\b)[^\n]*", re.MULTILINE | re.IGNORECASE), rb""),
+    (re.compile(rb"\bend[ \t]+(loop|facet)\b", re.IGNORECASE), rb"end\1"),
+    (re.compile(rb"\bfacet(\s+)(?:normal(\s+))?(?=outer\b)", re.IGNORECASE), rb"facet normal 0 0 0\1\2"),
 )
+"""Habits of other programs, and the words for them on as many lines."""
 
 FACET: Final = "facet normal . . . outer loop vertex . . . vertex . . . vertex . . . endloop endfacet"
-MUST_BE: Final = f"a facet must be {FACET!r}, with numbers for the points"
 WORDS: Final = tuple(word.encode() for word in FACET.split())
 KEYWORDS: Final = tuple((at, word) for at, word in enumerate(WORDS) if word != b".")
 COORDINATES: Final = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 """The words of a facet that are coordinates."""
 
-NUMERIC: Final = b"0123456789+-.ed "
-"""The letters of coordinates in small letters."""
 
-
-def read_text(data: bytes, place: str, stem: str) -> tuple[Floats, Indices, tuple[str, ...], tuple[str, ...]]:
+def read_text(data: bytes, place: str, stem: str) -> tuple[Floats, Indices, tuple[str, ...], list[str]]:
     """The corners of triangles, (corners, 3), their part numbers, the names of parts, and messages.
 
     The lines of `data` end with LF; `place` is the file's name in messages, `stem` the name of a solid
     without one. Raises InputError.
     """
-    corners = [np.empty((0, 3))]
-    counts: list[int] = []
-    names: list[str] = []
-    name: bytes | None = None
-    begin = 0
-    for match in chain(SOLID.finditer(data), (None,)):
-        end = len(data) if match is None else match.start()
-        of_solid = [_corners(data, *block, place) for block in _blocks(data, begin, end)]
-        count = sum(map(len, of_solid)) // 3
-        if count and name is None:
-            _refuse(data, begin, place, "a facet must stand in a solid, not outside; add a line 'solid'")
-        if count:
-            corners += of_solid
+    solids = [*SOLID.finditer(data)]
+    ends = [*(match.start() for match in solids), len(data)]
+    all_corners, counts, names = [np.empty((0, 3))], [], []
+    for match, end in zip((None, *solids), ends, strict=True):
+        corners = [*_corners(data, match.end() if match else 0, end, place)]
+        # Empty lines and comments are no facets.
+        if count := sum(map(len, corners)) // 3:
+            all_corners += corners
             counts.append(count)
-            names.append(name_of(name or b"") or stem)
-        if match is None:
-            break
-        if name is None and match[1]:
-            _refuse(data, match.start(), place, "a solid must begin before it ends; remove the line")
-        name = None if match[1] else match[2]
-        begin = match.end()
+            names.append(name_of(match[2] if match and not match[1] else b"") or stem)
+    is_cut = solids and not solids[-1][1]
     return (
-        np.concatenate(corners),
+        np.concatenate(all_corners),
         np.repeat(np.arange(len(counts)), np.array(counts, np.intp)),
         different(names),
-        ("the last solid has no 'endsolid': the file may be cut short",) if name is not None else (),
+        ["the last solid has no 'endsolid': the file may be cut short"] if is_cut else [],
     )
 
 
-def _blocks(data: bytes, begin: int, end: int) -> Iterator[tuple[int, int]]:
-    """The beginnings and ends of blocks of whole facets, of about BLOCK bytes, between two places."""
+def _corners(data: bytes, begin: int, end: int, place: str) -> Iterator[Floats]:
+    """The corners of the facets between two places, (corners, 3), of about BLOCK bytes at a time."""
     while begin < end:
-        end_of_facet = ENDFACET.search(data, min(begin + BLOCK, end), end)
-        stop = end if end_of_facet is None else end_of_facet.end()
-        if data[begin:stop].strip():
-            yield begin, stop
+        last = ENDFACET.search(data, min(begin + BLOCK, end), end)
+        stop = end if last is None else last.end()
+        text = data[begin:stop]
+        if text.strip():
+            corners = _corners_of_facets(text)
+            if corners is None:
+                for habit, words in HABITS:
+                    text = habit.sub(words, text)
+                corners = _corners_of_facets(text)
+            if corners is None:
+                _refuse(text, data.count(b"\n", 0, begin) + 1, place)
+            yield corners
         begin = stop
-
-
-def _corners(data: bytes, begin: int, end: int, place: str) -> Floats:
-    """The corners of whole facets, (corners, 3)."""
-    text = data[begin:end]
-    corners = _corners_of_facets(text)
-    if corners is None:
-        text = HABITS.sub(_as_others_write, text)
-        corners = _corners_of_facets(text)
-    if corners is None:
-        _refuse_words(text, data.count(b"\n", 0, begin) + 1, place)
-    return corners
-
-
-def _as_others_write(habit: re.Match[bytes]) -> bytes:
-    """The words for a habit of other programs, on as many lines."""
-    if habit["end"]:
-        return b"end" + habit["end"]
-    return b"facet normal 0 0 0 " + b"\n" * habit["normal"].count(b"\n") if habit["normal"] else b""
 
 
 def _corners_of_facets(text: bytes) -> Floats | None:
     """The corners of whole facets, (corners, 3); None if a word is wrong."""
     words = text.lower().split()
-    facets = len(words) // len(WORDS)
-    if len(words) != facets * len(WORDS) or any(
-        words[at :: len(WORDS)].count(word) != facets for at, word in KEYWORDS
-    ):
+    facets, more = divmod(len(words), len(WORDS))
+    if more or any(words[at :: len(WORDS)].count(word) != facets for at, word in KEYWORDS):
         return None
-    corners = np.empty((len(COORDINATES), facets))
-    for row, at in enumerate(COORDINATES):
-        column = words[at :: len(WORDS)]
-        text = b" ".join(column)
-        if text.translate(None, NUMERIC):
-            return None
-        if b"d" in text:
-            column = text.translate(D_TO_E).split()
-        try:
-            corners[row] = np.fromiter(map(float, column), np.float64, facets)
-        except ValueError:
-            return None
+    try:
+        corners = np.stack([parsed(b" ".join(words[at :: len(WORDS)]), facets) for at in COORDINATES])
+    except ValueError:
+        return None
     return corners.T.reshape(-1, 3) if (np.abs(corners) <= LARGEST_COORDINATE).all() else None
 
 
-def _refuse_words(text: bytes, line: int, place: str) -> NoReturn:
+def _refuse(text: bytes, line: int, place: str) -> NoReturn:
     """Raise InputError about the first word of facets, from a line on, that is wrong."""
-    words = [*re.finditer(rb"\S+", text)]
-    for at, match in enumerate(words):
-        wanted = WORDS[at % len(WORDS)]
-        if wanted != b"." and match[0].lower() != wanted:
-            rule = f"{MUST_BE} (here {wanted.decode()!r})"
-        elif at % len(WORDS) in COORDINATES and not abs(decimal(match[0])) <= LARGEST_COORDINATE:
-            rule = COORDINATE
+    # The end is an empty word.
+    words = zip(re.finditer(rb"\S+|\Z", text.rstrip()), cycle(enumerate(WORDS)), strict=False)
+    for match, (number, wanted) in words:
+        word = match[0]
+        if number in COORDINATES and word:
+            is_right = abs(decimal(word)) <= LARGEST_COORDINATE
         else:
-            continue
-        _refuse(text, match.start(), place, f"{rule}, not {shown(match[0])}; correct it", line)
-    wanted = WORDS[len(words) % len(WORDS)]
-    _refuse(text, len(text), place, f"{MUST_BE}, and not end before {wanted.decode()!r}; correct it", line)
-
-
-def _refuse(data: bytes, at: int, place: str, sentence: str, first_line: int = 1) -> NoReturn:
-    """Raise InputError about the first word from a byte on."""
-    # Lines before it may be empty.
-    at = min(at + len(data[at:]) - len(data[at:].lstrip()), len(data.rstrip()))
-    line = data.count(b"\n", 0, at) + first_line
-    raise InputError(f"{place}, line {line}: {sentence}")
+            is_right = wanted == word.lower() or (wanted == b"." and word != b"")
+        if not is_right:
+            break
+    line += text.count(b"\n", 0, match.start())
+    raise InputError(
+        f"{place}, line {line}: a facet must be {FACET!r} (here {wanted.decode()!r}), with numbers of at most"
+        f" 1e30 in size for the points, not {shown(word) if word else 'end'}; correct it"
+    )

@@ -12,71 +12,28 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
-from autocolor.errors import InputError
-from autocolor.files.array_file import (
-    KEY,
-    MESH_SCALARS,
-    NORMALS,
-    ArrayFileKind,
-    array_file_bytes,
-    normal_members,
-    normal_rows,
-    normals_of,
-    read_array_file,
-    scalar_members,
-    scalar_rows,
-    scalars_of,
-)
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, mesh_of, read_array_file
 from autocolor.files.meshes.repair import FILE, PLAIN, MeshReport, Placement, placed, turned_up
-from autocolor.immutable import read_only
-from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals
+from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.mesh import Mesh
 
 SUFFIX: Final = ".tables"
 
-TABLE_FILE: Final = ArrayFileKind(
-    noun="table file",
-    advice="write the scene again",
-    formats=("autocolor tables 2", "autocolor tables 1"),
-    keys=frozenset(("part_names",)),
-    arrays={"coordinates": ("<f8", 2), "node_numbers": ("<i4", 2), "part_numbers": ("<i4", 1)},
-    series={KEY: MESH_SCALARS, **NORMALS},
-    optional=frozenset(NORMALS),
-)
+TABLE_FILE: Final = ArrayFileKind("table file", "write the scene again", "autocolor tables 2", {})
 
 
 def table_file_bytes(mesh: Mesh) -> bytes:
     """The content of the table file of a mesh, without its crease angle."""
-    arrays = {name: vars(mesh)[name] for name in TABLE_FILE.arrays}
-    header = {"part_names": mesh.part_names, KEY: scalar_rows(mesh.scalars), **normal_rows(mesh.own_normals)}
-    members = {**scalar_members(mesh.scalars), **normal_members(mesh.own_normals)}
-    return array_file_bytes(TABLE_FILE, header, {**arrays, **members})
+    return array_file_bytes(TABLE_FILE, mesh, {"part_names": mesh.part_names}, {})
 
 
 def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a table file, in which nothing is ever repaired. Raises InputError."""
     header, arrays = read_array_file(TABLE_FILE, path)
-    names = header["part_names"]
-    try:
-        own_normals = normals_of(arrays) if placement.normals == FILE else None
-        if own_normals is not None:
-            vectors = turned_up(own_normals.vectors.astype(np.float64), placement.up).astype(np.float32)
-            own_normals = NodeNormals(read_only(np.asfortranarray(vectors)), own_normals.numbers)
-        mesh = Mesh(
-            placed(arrays["coordinates"], placement)
-            if arrays["coordinates"].shape[1] == 3
-            else arrays["coordinates"],
-            arrays["node_numbers"],
-            arrays["part_numbers"],
-            tuple(names) if isinstance(names, list) else (),
-            CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle,
-            scalars_of(header, arrays),
-            own_normals,
-        )
-    except InputError as error:
-        raise InputError(
-            f"{path.name}: {problem[:400]}; {TABLE_FILE.advice}" for problem in error.problems
-        ) from None
-    return MeshReport(mesh)
+    normals = arrays.pop("own_normal_0", None)
+    if normals is not None and placement.normals == FILE:
+        arrays["own_normal_0"] = turned_up(normals, placement.up)
+    angle = CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle
+    with TABLE_FILE.naming(path.name):
+        arrays["coordinates"] = placed(arrays["coordinates"], placement)
+        return MeshReport(mesh_of(header, arrays, header["part_names"], angle))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, NamedTuple
@@ -22,16 +23,13 @@ from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import free_path, path_within
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
 from autocolor.files.writing import write_atomically
-from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain, keys_of
+from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
 from autocolor.scene.kinds import OneOf, Text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
 
 MOST_MESHES: Final = 1000
 
-FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
-"""The keys that name the files of a mesh: one file, or a node table and a polygon table."""
-
-MESH_FILE_KEYS: Final = frozenset(key for keys in FILE_KEYS for key in keys)
+MESH_FILE_KEYS: Final = ("file", "nodes", "polygons")
 """The keys of a `[[mesh]]` table whose values are paths; the others tell how the files are read."""
 
 
@@ -65,11 +63,11 @@ class MeshEntry(Row):
     @property
     def file_keys(self) -> tuple[str, ...]:
         """The keys of the files that are given."""
-        return tuple(key for keys in FILE_KEYS for key in keys if vars(self)[key] is not None)
+        return tuple(key for key in MESH_FILE_KEYS if vars(self)[key] is not None)
 
     def rules(self) -> Iterator[Problem]:
         """The keys must name either one file or two tables."""
-        if self.file_keys not in FILE_KEYS:
+        if self.file_keys not in (("file",), ("nodes", "polygons")):
             listed = " and ".join(self.file_keys) or "none of them"
             yield Problem((), f"it must have a file, or nodes and polygons, not {listed}; correct it")
 
@@ -99,33 +97,20 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     for path, entry in entries.items():
         if problems.full:
             break
-        files = _files(problems, path, entry, folder, outside)
+        files = {}
+        for key in entry.file_keys:
+            reasons: list[str] = []
+            file = path_within(reasons, folder, vars(entry)[key], outside=outside)
+            problems.note_all((Problem((key,), reason) for reason in reasons), path)
+            if file is not None:
+                files[key] = file
         try:
-            if tuple(files) in FILE_KEYS:
+            if len(files) == len(entry.file_keys):
                 placement = Placement(entry.up, entry.scale, angle, entry.normals)
                 reports.append(read_mesh(files, placement))
         except InputError as error:
             problems.note_file((*path, next(iter(files))), error)
     return reports
-
-
-def _files(
-    problems: SceneProblems, path: KeyPath, entry: MeshEntry, folder: Path, outside: bool
-) -> dict[str, Path]:
-    """The files of one `[[mesh]]` table by key, without those that are refused."""
-    files = {}
-    for key in entry.file_keys:
-        reasons: list[str] = []
-        file = path_within(reasons, folder, vars(entry)[key], outside=outside)
-        problems.note_all([Problem((key,), reason) for reason in reasons], path)
-        if file is not None:
-            files[key] = file
-    return files
-
-
-def mesh_file(table: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a `[[mesh]]` table that are needed to read the mesh again."""
-    return {key: table[key] for key in keys_of(MeshEntry) if key in table and key != "crease_angle"}
 
 
 @dataclass(frozen=True)
@@ -140,17 +125,8 @@ class MeshSource:
     scene_file: Path | None = None
 
 
-_SOURCES: Final[WeakKeyDictionary[Mesh, MeshSource]] = WeakKeyDictionary()
-
-
-def keep_source(mesh: Mesh, source: MeshSource) -> None:
-    """Remember the files that a mesh was read from."""
-    _SOURCES[mesh] = source
-
-
-def source_of(mesh: Mesh) -> MeshSource | None:
-    """The files that a mesh was read from; None for a mesh of a picture, a store or a program."""
-    return _SOURCES.get(mesh)
+SOURCES: Final[WeakKeyDictionary[Mesh, MeshSource]] = WeakKeyDictionary()
+"""The files that each mesh was read from; a mesh of a picture, a store or a program has no source."""
 
 
 class Meshes(NamedTuple):
@@ -160,20 +136,29 @@ class Meshes(NamedTuple):
     reports: list[MeshReport]
 
 
-def meshes_there(folder: Path, mesh: Mesh, old: bytes | None) -> Meshes | None:
+def meshes_there(folder: Path, mesh: Mesh, old: bytes) -> Meshes | None:
     """The files in a folder that hold a mesh; None if no files do.
 
     Candidates are the files that the old scene file names, and the files that the mesh was read from.
     """
-    candidates = [] if old is None else [entries_of(old)]
-    source = source_of(mesh)
-    if source is not None:
-        candidates.append(_relative(source.entries, source.folder, folder.resolve()))
+    candidates = [entries_of(old)]
+    if source := SOURCES.get(mesh):
+        # On Windows, a file may be on another drive.
+        with suppress(ValueError):
+            candidates.append(tuple(_from(folder.resolve(), source, entry) for entry in source.entries))
     for entries in candidates:
         reports = reports_of(folder, entries)
         if reports and has_same_tables(Mesh.joined([report.mesh for report in reports]), mesh):
             return Meshes(entries, reports)
     return None
+
+
+def _from(folder: Path, source: MeshSource, entry: Mapping[str, Any]) -> dict[str, Any]:
+    """A table of a source, with the paths of its files from another folder."""
+    paths = {
+        key: os.path.relpath(source.folder / entry[key], folder) for key in MESH_FILE_KEYS if key in entry
+    }
+    return {**entry, **{key: Path(path).as_posix() for key, path in paths.items()}}
 
 
 def entries_of(data: bytes) -> Entries:
@@ -182,23 +167,9 @@ def entries_of(data: bytes) -> Entries:
     return tuple(entries) if isinstance(entries, list) else ()
 
 
-def _relative(entries: Entries, source: Path, folder: Path) -> Entries:
-    """Tables with the paths of their files from another folder; empty if a file is not within it."""
-    tables = []
-    for entry in entries:
-        keys = dict(entry)
-        for key in keys.keys() & MESH_FILE_KEYS:
-            try:
-                keys[key] = Path(os.path.normpath(source / keys[key])).relative_to(folder).as_posix()
-            except ValueError:
-                return ()
-        tables.append(keys)
-    return tuple(tables)
-
-
 def reports_of(folder: Path, entries: Entries) -> list[MeshReport]:
     """The reports of reading the files that tables name; empty if a file or a table has a problem."""
-    problems = SceneProblems("scene.toml", b"", {})
+    problems = SceneProblems("scene.toml", b"", {"mesh": entries})
     reports = meshes_of(problems, list(entries), folder, outside=False)
     return [] if problems.messages else reports
 

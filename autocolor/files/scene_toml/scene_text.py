@@ -8,21 +8,18 @@ lights, for example, depend on the view.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.repair import COMPUTED
-from autocolor.files.scene_toml.toml_edit import edited_toml, item_numbers
-from autocolor.files.scene_toml.toml_text import parsed_toml, table_text, toml_key
-from autocolor.scene.columns import Row, fields_of, from_plain, to_plain, with_values
-from autocolor.scene.geometry.normals import CREASE_ANGLE
-from autocolor.scene.lights import Light
-from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, RowList, without_name
+from autocolor.files.meshes.repair import MeshReport
+from autocolor.files.scene_toml.scene_file import read_scene_file
+from autocolor.files.scene_toml.toml_edit import FILE_TABLES, ORDERED, edited_toml, item_numbers
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.scene.columns import Row, difference, fields_of, from_plain, to_plain, with_values
+from autocolor.scene.row_kinds import RowList, without_name
 from autocolor.scene.scene import Scene
-
-FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "lights")
-"""The tables of a scene file, in the order in which they are written."""
 
 BY_NAME: Final = ("parts", "surfaces")
 """The tables of a scene file whose rows are tables by name; rows of other tables have the key `name`."""
@@ -31,35 +28,18 @@ ALWAYS_WRITTEN: Final = ("eye", "direction", "target", "object_color")
 """Keys that are always written: a view needs them, and surfaces without a color are given different ones."""
 
 
-def scene_text(
-    scene: Scene, mesh_files: Sequence[Mapping[str, str]], *, without_defaults: bool = False
-) -> str:
-    """The scene as TOML, with all its tables; `mesh_files` are its `[[mesh]]` tables (see SceneReport).
+def scene_text(scene: Scene, mesh_files: Sequence[Mapping[str, Any]]) -> str:
+    """The scene as TOML, with all keys but its name; `mesh_files` are its `[[mesh]]` tables."""
+    entries = with_crease_angle(mesh_files, scene.mesh.crease_angle)
+    return (edited_toml(b"", {**tables_of(scene), "mesh": entries}) or b"").decode()
 
-    Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
-    the name of the folder or file.
-    """
-    tables = tables_of(scene, sparse=without_defaults)
-    entries: list[dict[str, Any]] = [dict(files) for files in mesh_files]
-    if entries:
-        # The first table has the crease angle.
-        entries[0]["crease_angle"] = scene.mesh.crease_angle
-    tables["mesh"] = [sparse_entry(entry) for entry in entries] if without_defaults else entries
-    keys = {
-        key: value
-        for key, value in tables.items()
-        if key not in FILE_TABLES or (key, value) == ("lights", [])
-    }
-    blocks = [table_text("", keys)] if keys else []
-    for name in FILE_TABLES:
-        table = tables.get(name)
-        if isinstance(table, list):
-            blocks += [table_text(f"[[{name}]]", row) for row in table]
-        elif name in BY_NAME:
-            blocks += [table_text(f"[{name}.{toml_key(key)}]", row) for key, row in tables[name].items()]
-        elif table is not None:
-            blocks.append(table_text(f"[{name}]", table))
-    return "\n".join(blocks)
+
+def with_crease_angle(entries: Sequence[Mapping[str, Any]], angle: float) -> list[dict[str, Any]]:
+    """`[[mesh]]` tables with a crease angle: in each table that has the key, else in the first table."""
+    tables = [dict(entry) for entry in entries]
+    for table in [table for table in tables if "crease_angle" in table] or tables[:1]:
+        table["crease_angle"] = angle
+    return tables
 
 
 def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
@@ -68,51 +48,38 @@ def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
     If `sparse`, keys whose values are their defaults are left out; empty tables of a light always are.
     """
     keys_of_row = sparse_row if sparse else _plain_row
-    tables: dict[str, Any] = {}
+    tables = to_plain(scene)
+    del tables["name"]
     for name, field in fields_of(Scene).items():
-        value, kind = vars(scene)[name], field.column.kind
+        value = vars(scene)[name]
         if name in BY_NAME:
             tables[name] = {row.name: without_name(keys_of_row(row)) for row in value}
-        elif isinstance(kind, RowList):
+        elif isinstance(field.column.kind, RowList):
             tables[name] = [keys_of_row(row) for row in value]
-        elif isinstance(kind, Nested) and value is not None:
+        elif sparse and field.default and value == field.default():
+            tables.pop(name, None)
+        elif isinstance(value, Row) and name in tables:
             tables[name] = keys_of_row(value)
-        elif name != "name" and not (
-            field.default and value == field.default() and (sparse or value is None)
-        ):
-            tables.update(kind.to_plain(name, value))
-    return tables
+    # Without the key, lights would be created.
+    return {key: value for key, value in tables.items() if value not in ([], {}) or key == "lights"}
 
 
 def _plain_row(row: Row) -> dict[str, object]:
     return {key: value for key, value in to_plain(row).items() if value != {}}
 
 
-def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """A `[[mesh]]` table without keys whose values are their defaults."""
-    defaults = {"up": "z", "scale": 1.0, "normals": COMPUTED, "crease_angle": CREASE_ANGLE}
-    return {key: value for key, value in entry.items() if value != defaults.get(key)}
-
-
 def sparse_row(row: Row) -> dict[str, object]:
     """The row as keys and plain values, without keys whose values are their defaults."""
     keys = to_plain(row)
     required = [name for name, field in fields_of(type(row)).items() if field.default is None]
-    always = (*required, *ALWAYS_WRITTEN)
-    given = {key: keys[key] for key in always if key in keys}
-    model = {key: keys[key] for key in ("model",) if key in keys}
-    default = to_plain(from_plain(type(row), given))
-    of_model = to_plain(from_plain(type(row), {**given, **model}))
-    if isinstance(row, Light):
-        keys["flaps"] = {axis: sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None}
-    for name, field in fields_of(type(row)).items():
-        if isinstance(field.column.kind, NamedRows) and name in keys:
-            keys[name] = {inner.name: without_name(sparse_row(inner)) for inner in vars(row)[name]}
-    return {
-        key: value
-        for key, value in keys.items()
-        if key in always or value != (default if key in model else of_model).get(key)
-    }
+    given = {key: keys[key] for key in (*required, *ALWAYS_WRITTEN) if key in keys}
+    changes = difference(from_plain(type(row), given), row)
+    for key, value in vars(row).items():
+        if isinstance(value, Row) and key in keys:
+            keys[key] = sparse_row(value)
+        elif isinstance(value, tuple) and value and isinstance(value[0], Row):
+            keys[key] = {inner.name: without_name(sparse_row(inner)) for inner in vars(row)[key]}
+    return {key: value for key, value in keys.items() if key in given or key in changes}
 
 
 # Editing a text.
@@ -120,54 +87,28 @@ def sparse_row(row: Row) -> dict[str, object]:
 MOST_ROUNDS: Final = 6
 """Limit: a text needs at most three rounds: for written keys, for their order, for created keys."""
 
-ORDERED: Final = (
-    "surfaces",
-    *(name for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)),
-)
-"""The tables whose keys have an order."""
-
 Tables = Mapping[str, Any]
 
 
-def edited_to(
-    data: bytes, scene: Scene, read: Callable[[bytes], Scene], *, complete: bool = False
-) -> bytes | None:
+def edited_to(data: bytes | None, scene: Scene, path: Path, reports: list[MeshReport]) -> bytes | None:
     """The text of a scene file, edited until it gives the scene; its mesh and its name may differ.
 
-    `read` reads a text for the scene's mesh, or raises InputError. If `complete`, all keys and rows are
-    written, with values as in a new file. None if the text cannot be read, or if no edit makes it give the
-    scene.
+    `reports` are the meshes that the text names. None if there is no text, or if it cannot be read, or is too
+    long, or if no edit makes it give the scene.
     """
-    edited: bytes | None = data
     for _ in range(MOST_ROUNDS):
-        if edited is None:
+        if data is None or len(data) > LARGEST_TEXT:
             return None
         try:
-            current = read(edited)
+            current = read_scene_file(path, data=data, meshes=reports).scene
         except InputError:
             return None
-        document = parsed_toml(edited, "scene.toml")
-        is_same = with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene)
-        if is_same and not complete:
-            return edited
-        if is_same:
-            wanted = {**document, **tables_of(scene)}
-        else:
-            wanted = _changed(document, tables_of(current), tables_of(scene), tables_of(scene, sparse=True))
-        # Without the key, lights would be created.
-        given = {
-            key: value for key, value in wanted.items() if value != [] or key == "lights" or key in document
-        }
-        before, edited = edited, with_document(edited, given)
-        if is_same and edited == before:
-            return edited
+        if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
+            return data
+        document = parsed_toml(data, path.name)
+        wanted = _changed(document, tables_of(current), tables_of(scene), tables_of(scene, sparse=True))
+        data = edited_toml(data, wanted)
     return None
-
-
-def with_document(data: bytes, document: Tables) -> bytes | None:
-    """The text of a scene file, edited until it gives these values; None if no edit does."""
-    text = edited_toml(data.decode(), document, FILE_TABLES, ORDERED)
-    return None if text is None else text.encode()
 
 
 def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> dict[str, Any]:
@@ -185,18 +126,15 @@ def _changed(written: Tables, before: Tables, after: Tables, sparse: Tables) -> 
             if key in sparse:
                 table[key] = sparse[key]
         elif isinstance(value, Mapping) and isinstance(before[key], Mapping) and isinstance(given, Mapping):
-            inner = _changed(given, before[key], value, sparse.get(key, value))
+            fresh = sparse.get(key, value)
+            table[key] = inner = _changed(given, before[key], value, fresh)
             if key in ORDERED and list(before[key]) != list(value):
-                inner = {
-                    name: inner.get(name, sparse.get(key, value).get(name, value[name])) for name in value
-                }
-            table[key] = inner
+                table[key] = {name: inner.get(name, fresh.get(name, value[name])) for name in value}
         elif isinstance(value, list) and key in FILE_TABLES:
+            numbers = item_numbers(given or (), value)
             table[key] = [
                 row if number is None else _changed(given[number], before[key][number], whole, row)
-                for number, whole, row in zip(
-                    item_numbers(given or (), value), value, sparse[key], strict=True
-                )
+                for number, whole, row in zip(numbers, value, sparse.get(key, ()), strict=True)
             ]
         else:
             table[key] = sparse.get(key, value) if isinstance(value, Mapping) else value

@@ -1,8 +1,8 @@
 """Editing the text of a TOML file until it gives other values; everything else stays as it is written.
 
-The text is cut into blocks: a header, with the comments directly above it, and the keys below it. Blocks are
-removed, added and moved here. The keys of a block whose values change are edited by tomlkit, which keeps the
-comments, the order and the style, also within arrays. tomllib reads each edited block, and the whole text.
+The text is cut into blocks: a header, with the comments directly above it, and the keys below it. Blocks and
+keys are removed, added and moved here. A key whose value changes is edited by tomlkit, which keeps the
+comments, the order and the style, also within arrays. tomllib reads each edited key, and the whole text.
 
 Measured and rejected: tomlkit for whole files. It leaves the comment above a header with the table before,
 gathers arrays of tables that stand apart, writes wrong headers for tables inside of their rows, and takes
@@ -13,30 +13,38 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, Final, NamedTuple
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import InlineTable
 
-from autocolor.files.scene_toml.toml_text import (
-    TOKEN,
-    KeyPath,
-    statements_of,
-    table_text,
-    toml_key,
-    toml_value,
-)
+from autocolor.files.scene_toml.toml_text import KeyPath, key_text, statements_of, toml_key, toml_value
 from autocolor.logs import logger_of
 
 LOG: Final = logger_of(__name__)
 
 EMPTY_LINE: Final = re.compile(r"^[ \t\r]*\n", re.MULTILINE)
 
+FILE_TABLES: Final = ("view", "views", "scalar", "mesh", "parts", "surfaces", "lights")
+"""The tables of a scene file that get headers of their own, in the order in which they are written."""
+
+ORDERED: Final = ("surfaces", "exposure")
+"""The tables whose keys have an order."""
+
 Document = Mapping[str, Any]
 """The values of a TOML text: tables are dictionaries, arrays are lists."""
+
+
+class WrittenKey(NamedTuple):
+    """A key with its value, and the comments and empty lines above it; the path is from the block's table."""
+
+    path: KeyPath
+    above: str
+    written: str
 
 
 @dataclass(eq=False)
@@ -48,7 +56,7 @@ class Block:
 
     path: KeyPath
     head: str
-    keys: str = ""
+    keys: list[WrittenKey] = field(default_factory=list)
     tail: str = ""
     apart: bool = False
 
@@ -71,7 +79,7 @@ def blocks_of(text: str) -> list[Block]:
             blocks[-1].tail = above[:start]
             blocks.append(Block(statement.path, above[start:] + written))
         else:
-            blocks[-1].keys += above + written
+            blocks[-1].keys.append(WrittenKey(statement.path[len(blocks[-1].path) :], above, written))
     blocks[-1].tail = text[end:]
     return blocks
 
@@ -87,11 +95,13 @@ def item_numbers(old: Sequence[Any], new: Sequence[Any]) -> list[int | None]:
     left: dict[object, list[int]] = {}
     for number, item in enumerate(old):
         left.setdefault(_identity(item), []).append(number)
-    numbers = [left[key].pop(0) if left.get(key := _identity(item)) else None for item in new]
-    others = iter(
-        sorted(number for numbers in left.values() for number in numbers) if len(old) == len(new) else ()
-    )
-    return [next(others, None) if number is None else number for number in numbers]
+    numbers: list[int | None] = [
+        left[key].pop(0) if left.get(key := _identity(item)) else None for item in new
+    ]
+    if len(old) == len(new):
+        others = iter(sorted(set(range(len(old))) - set(numbers)))
+        numbers = [next(others) if number is None else number for number in numbers]
+    return numbers
 
 
 def _identity(item: Any) -> str:
@@ -99,69 +109,79 @@ def _identity(item: Any) -> str:
     return str(item["name"]) if isinstance(item, dict) and "name" in item else repr(item)
 
 
-def edited_toml(
-    text: str, wanted: Document, tables: Sequence[str] = (), ordered: Collection[str] = ()
-) -> str | None:
+def edited_toml(data: bytes, wanted: Document) -> bytes | None:
     """The valid TOML text, edited until it gives the wanted values; None if no edit does.
 
-    `tables` are the keys of tables that get headers of their own, in the order of new ones; `ordered` are the
-    keys of tables whose keys have an order. Rows of an array are the same rows if they have the same name.
+    Rows of an array are the same rows if they have the same name. Raises InputError for a text in the values
+    that UTF-8 lacks.
     """
     # Tuples become lists, as in what is read back.
     wanted = tomllib.loads(f"wanted = {toml_value(wanted)}")["wanted"]
     # Edit lines that end with line feeds; a file whose lines end otherwise gets them back.
+    text = data.decode()
     ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
     text = text.replace(ends, "\n")
     old = tomllib.loads(text)
-    if repr(old) == repr(wanted):
-        return text.replace("\n", ends)
-    # Keys without headers that have another order are removed, and added again; if need be all of them.
-    moved = {name for name in ordered if not _begins(wanted.get(name), old.get(name))}
-    for again in (moved, ordered):
-        edited = _edited_text(text, old, wanted, tables, again)
+    # Tables whose keys do not get their order when keys are edited and added are written anew.
+    moved: Collection[str] = ()
+    for _ in range(2):
+        edited = text if repr(old) == repr(wanted) else _edited_text(text, old, wanted, moved)
         try:
             values = tomllib.loads(edited)
         except tomllib.TOMLDecodeError:
-            continue
-        if values == wanted and all(_begins(wanted.get(name), values.get(name)) for name in ordered):
-            return edited.replace("\n", ends)
+            values = {}
+        moved = [name for name in ORDERED if _keys(values.get(name)) != _keys(wanted.get(name))]
+        if values == wanted and not moved:
+            return edited.replace("\n", ends).encode()
     return None
 
 
-def _edited_text(
-    text: str, old: Document, wanted: Document, tables: Sequence[str], moved: Collection[str]
-) -> str:
-    """The text with the wanted values, unless an edit fails; keys of moved tables are added anew."""
+def _keys(value: Any) -> list[Any]:
+    """The keys of a table in their order, or the numbers of the rows of an array; none of another value."""
+    return list(value if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else ())
+
+
+def _edited_text(text: str, old: Document, wanted: Document, moved: Collection[str]) -> str:
+    """The text with the wanted values, unless an edit fails; keys of moved tables are written anew."""
     blocks = blocks_of(text)
-    last = blocks[-1]
-    blocks = _wanted_blocks(blocks, old, wanted)
-    if blocks[-1] is not last:
-        blocks[-1].tail = f"{blocks[-1].tail.rstrip()}\n" if blocks[-1].tail.strip() else ""
+    before = _numbered(blocks, old, wanted)
+    blocks = [block for block in blocks if isinstance(_at(wanted, block.path), dict)]
     # Tables without headers: keys of the file, or keys below one header for all rows.
-    inline = {name for name, value in tomllib.loads(blocks[0].keys).items() if value}
-    inline |= {str(block.path[0]) for block in blocks if len(block.path) == 1 and block.keys}
-    for name in tables:
-        if name not in inline or name in moved:
-            _add_blocks(blocks, name, wanted.get(name), tables[: tables.index(name)])
-        _arrange(blocks, name, wanted)
-    above = {block.path[:end] for block in blocks for end in range(1, len(block.path) + 1)}
-    headers = {block.path for block in blocks}
+    inline = {(*block.path, *key.path)[0] for block in blocks if len(block.path) < 2 for key in block.keys}
     for block in blocks:
-        _edit_keys(block, _own_values(_at(wanted, block.path), block.path, headers, above), moved)
+        if repr(_at(before, block.path)) != repr(_at(wanted, block.path)):
+            block.keys = [_with_value(key, block.path, wanted, moved) for key in block.keys]
+    for name in FILE_TABLES:
+        if name not in inline or name in moved:
+            _add_blocks(blocks, name, wanted.get(name))
+        _arrange(blocks, name, _keys(wanted.get(name)))
+    given = {block.path for block in blocks}
+    given |= {(*block.path, *key.path) for block in blocks for key in block.keys if key.written}
+    above = {path[:end] for path in given for end in range(1, len(path) + 1)}
+    for block in blocks:
+        table = _at(wanted, block.path)
+        added = [
+            key_text(path[len(block.path) :], value) for path, value in _new(table, block.path, given, above)
+        ]
+        if added and not block.keys and not block.path:
+            # New keys of a file go below the comment at its top.
+            block.head, block.tail = block.tail, "\n"
+        block.keys += [WrittenKey((), "", text) for text in added]
     return _joined(blocks)
 
 
-def _wanted_blocks(blocks: Sequence[Block], old: Document, wanted: Document) -> list[Block]:
-    """The blocks of tables that stay, with the new numbers of rows."""
-    numbers: dict[str | int, dict[Any, int]] = {}
-    for key, rows in old.items():
-        if isinstance(rows, list) and isinstance(new := wanted.get(key), list):
-            numbers[key] = {number: row for row, number in enumerate(item_numbers(rows, new))}
-    for block in blocks:
-        if len(block.path) > 1 and isinstance(block.path[1], int):
-            name, number, *rest = block.path
-            block.path = (name, numbers.get(name, {}).get(number, -1), *rest)
-    return [block for block in blocks if isinstance(_at(wanted, block.path), dict)]
+def _numbered(blocks: Sequence[Block], old: Document, wanted: Document) -> Document:
+    """The old values with rows that have headers in their new places; blocks get these numbers, or -1."""
+    before = dict(old)
+    for name in {str(block.path[0]) for block in blocks if len(block.path) > 1 and block.path[1] == 0}:
+        rows = wanted.get(name)
+        numbers = item_numbers(old[name], rows) if isinstance(rows, list) else []
+        before[name] = [None if number is None else old[name][number] for number in numbers]
+        places = {number: place for place, number in enumerate(numbers)}
+        for block in blocks:
+            if block.path[0:1] == (name,) and isinstance(block.path[1], int):
+                block.path = (name, places.get(block.path[1], -1), *block.path[2:])
+    return before
 
 
 def _at(value: Any, path: KeyPath) -> Any:
@@ -174,29 +194,30 @@ def _at(value: Any, path: KeyPath) -> Any:
     return value
 
 
-def _add_blocks(blocks: list[Block], name: str, table: Any, before: Sequence[str]) -> None:
-    """Add the blocks of new tables below those of the same key, or of the nearest key before it."""
-    paths: list[KeyPath] = [(name,)] if table else []
-    if isinstance(table, list):
-        paths = [(name, row) for row in range(len(table))]
-    elif table and all(isinstance(row, dict) for row in table.values()):
-        paths = [(name, key) for key in table]
+def _add_blocks(blocks: list[Block], name: str, table: Any) -> None:
+    """Add the blocks of new tables below those of the same key, or at the end."""
+    paths: list[KeyPath] = [(name, key) for key in _keys(table)]
+    if isinstance(table, dict) and not all(isinstance(row, dict) for row in table.values()):
+        paths = [(name,)]
     present = {block.path[:2] for block in blocks}
-    last = {block.path[0]: place for place, block in enumerate(blocks) if block.path}
-    place = next((last[each] for each in (name, *reversed(before)) if each in last), 0)
-    for path in paths:
-        if path not in present:
-            place += 1
-            header = ".".join(toml_key(part) for part in path if isinstance(part, str))
-            head = f"[[{header}]]\n" if isinstance(table, list) else f"[{header}]\n"
-            blocks.insert(place, Block(path, head, apart=True))
+    place = max(
+        (number for number, block in enumerate(blocks, 1) if block.path[:1] == (name,)), default=len(blocks)
+    )
+    header = "[[{}]]\n" if isinstance(table, list) else "[{}]\n"
+    blocks[place:place] = [
+        Block(
+            path,
+            header.format(".".join(toml_key(part) for part in path if isinstance(part, str))),
+            apart=True,
+        )
+        for path in paths
+        if path not in present
+    ]
 
 
-def _arrange(blocks: list[Block], name: str, wanted: Document) -> None:
-    """Move the rows of a table to the wanted order."""
+def _arrange(blocks: list[Block], name: str, keys: Sequence[Any]) -> None:
+    """Move the rows of a table to the order of their keys."""
     rows = [block for block in blocks if len(block.path) > 1 and block.path[0] == name]
-    table = wanted.get(name, ())
-    keys: Iterable[str | int] = table if isinstance(table, dict) else range(len(table))
     order = {key: row for row, key in enumerate(keys)}
     arranged = sorted(rows, key=lambda block: order[block.path[1]])
     if arranged != rows:
@@ -207,49 +228,19 @@ def _arrange(blocks: list[Block], name: str, wanted: Document) -> None:
         blocks[:] = [*others[:first], *arranged, *others[first:]]
 
 
-def _own_values(
-    table: Document, path: KeyPath, headers: Collection[KeyPath], above: Collection[KeyPath]
-) -> dict[str, Any]:
-    """The values of a table at a path that no other block has; `above` are the paths of blocks and above."""
-    values = {}
+def _new(
+    table: Document, path: KeyPath, given: Collection[KeyPath], above: Collection[KeyPath]
+) -> Iterator[tuple[KeyPath, Any]]:
+    """The paths and values of a table at a path that the text does not have.
+
+    `given` are the paths of headers and keys, `above` are these paths and those of the tables around them.
+    """
     for key, value in table.items():
         inner = (*path, key)
         if inner not in above:
-            values[key] = value
-        elif inner not in headers and isinstance(value, dict):
-            values[key] = _own_values(value, inner, headers, above)
-    return {key: value for key, value in values.items() if value != {} or (*path, key) not in above}
-
-
-def _edit_keys(block: Block, wanted: Document, moved: Collection[str]) -> None:
-    """Edit the keys of a block until they give the wanted values; keys of moved tables are added anew."""
-    old = tomllib.loads(block.keys)
-    if repr(old) == repr(wanted):
-        return
-    if block.path:
-        moved = old.keys() if len(block.path) == 1 and block.path[0] in moved else ()
-    kept = {key: value for key, value in wanted.items() if key in old and key not in moved}
-    keys = _edited(block.keys, old, kept)
-    if keys is None:
-        name = block.head.strip().rpartition("\n")[2] or "keys at the top"
-        LOG.warning("%s: some values are written anew, without their comments", name)
-        keys, kept = _edited_singly(block.keys, old, kept)
-    added = {key: value for key, value in wanted.items() if key not in kept}
-    if added:
-        if not keys and not block.path:
-            # New keys of a file go below the comment at its top.
-            keys, block.tail = block.tail, "\n"
-        block.head = f"{block.head.rstrip()}\n" if block.head else ""
-        keys = f"{keys}{'' if not keys or keys.endswith(chr(10)) else chr(10)}{table_text('', added)}"
-    block.keys = keys
-
-
-def _begins(wanted: Any, old: Any) -> bool:
-    """Whether the wanted keys begin with those old keys that stay, in their order."""
-    if not isinstance(wanted, dict) or not isinstance(old, dict):
-        return True
-    left = [key for key in old if key in wanted]
-    return left == list(wanted)[: len(left)]
+            yield inner, value
+        elif inner not in given and isinstance(value, dict):
+            yield from _new(value, inner, given, above)
 
 
 def _joined(blocks: Sequence[Block]) -> str:
@@ -257,44 +248,40 @@ def _joined(blocks: Sequence[Block]) -> str:
     text = ""
     before = Block((), "")
     for block in blocks:
-        if text:
-            is_apart = (block.apart or before.apart) and block.path[:2] != before.path[:2]
-            line_end = "\n\n" if is_apart else "\n"
-            while not text.endswith(line_end):
-                text += "\n"
-        text += block.head + block.keys + block.tail
+        is_apart = (block.apart or before.apart) and block.path[:2] != before.path[:2]
+        if text and is_apart:
+            text = f"{text.rstrip(chr(10))}\n\n"
+        for part in (block.head, *(key.above + key.written for key in block.keys), block.tail):
+            text += "\n" if text and part and not text.endswith("\n") else ""
+            text += part
         before = block
     return text
 
 
-# The keys of one block.
+# One key.
 
 
-def _edited(text: str, old: Document, new: Document) -> str | None:
-    """The text edited by tomlkit; None if tomlkit cannot edit it."""
-    try:
-        document = tomlkit.parse(text)
-        _set_keys(document, old, new)
-        edited = tomlkit.dumps(document)
-        return edited if tomllib.loads(edited) == new else None
-    except (TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
-        return None
-
-
-def _edited_singly(text: str, old: Document, new: Document) -> tuple[str, dict[str, Any]]:
-    """The text edited key by key, and the new values that it gives: of those keys that tomlkit can edit."""
-    now = dict(old)
-    for key in old:
-        without = {name: value for name, value in now.items() if name != key}
-        for values in [{**now, key: new[key]}, without] if key in new else [without]:
-            if repr(now) == repr(values):
-                break
-            if (edited := _edited(text, now, values)) is not None:
-                text, now = edited, values
-                break
-        else:
-            return "", {}
-    return text, now
+def _with_value(key: WrittenKey, table: KeyPath, wanted: Document, moved: Collection[str]) -> WrittenKey:
+    """The key of a table with its wanted value; without text if it has none, or is to be written anew."""
+    path = (*table, *key.path)
+    new = _at(wanted, path)
+    if new is None:
+        return key._replace(written="")
+    for name in reversed(key.path):
+        new = {name: new}
+    old = tomllib.loads(key.written)
+    if path[0] not in moved or len(table) > 1:
+        if repr(old) == repr(new):
+            return key
+        with suppress(TOMLKitError, LookupError, ValueError, TypeError, AttributeError):
+            document = tomlkit.parse(key.written)
+            _set_keys(document, old, new)
+            edited = tomlkit.dumps(document)
+            if tomllib.loads(edited) == new:
+                return key._replace(written=edited)
+    if "#" in key.written:
+        LOG.warning("%s is written anew, without its comments", ".".join(map(str, path)))
+    return key._replace(written="")
 
 
 def _set_keys(table: Any, old: Document, new: Document) -> None:
@@ -317,54 +304,24 @@ def _set(container: Any, key: str | int, old: Any, new: Any) -> None:
     """Set a value of a table or an array of tomlkit."""
     if isinstance(old, dict) and isinstance(new, dict) and old.keys() & new.keys():
         _set_keys(container[key], old, new)
+    elif isinstance(old, list) and isinstance(new, list) and old and new:
+        _set_items(container[key], old, new)
     elif old != new or isinstance(old, bool) != isinstance(new, bool):
-        is_array = isinstance(old, list) and isinstance(new, list) and old and new
-        text = _array_text(container[key], old, new) if is_array else toml_value(new)
-        container[key] = tomlkit.value(text)
+        container[key] = tomlkit.value(toml_value(new))
 
 
-def _array_text(array: Any, old: list[Any], new: list[Any]) -> str:
-    """The text of an array of tomlkit with the new values."""
-    numbers = item_numbers(old, new)
-    present = set(numbers)
-    left: list[int | None] = [number for number in range(len(old)) if number in present]
-    for place in reversed(range(len(old))):
-        if place not in present:
-            del array[place]
-    added: list[Any] = []
-    for place, number in enumerate(numbers):
-        if number is None and place >= len(left):
-            added.append(new[place])
-        elif number is None:
-            array.insert(place, tomlkit.value(toml_value(new[place])))
-            left.insert(place, None)
+def _set_items(array: Any, old: list[Any], new: list[Any]) -> None:
+    """Change the items of an array of tomlkit from old to new values."""
+    stay: dict[int, int] = {}
+    last = -1
+    for place, number in enumerate(item_numbers(old, new)):
+        # An item that moves before another one is written anew.
+        if number is not None and number > last:
+            stay[place] = last = number
+    for number in sorted({*range(len(old))} - {*stay.values()}, reverse=True):
+        del array[number]
+    for place, item in enumerate(new):
+        if place in stay:
+            _set(array, place, old[stay[place]], item)
         else:
-            if left[place] != number:
-                at = left.index(number)
-                array.insert(place, array.pop(at))
-                left.insert(place, left.pop(at))
-            _set(array, place, old[number], new[place])
-    text: str = array.as_string()
-    for value in added:
-        text = _appended(text, toml_value(value))
-    return text
-
-
-def _appended(text: str, value: str) -> str:
-    """The text of an array with a value after its last one, on a line of its own if the bracket has one.
-
-    tomlkit writes the comma into a comment below the last value.
-    """
-    tokens = [
-        token for token in TOKEN.finditer(text[:-1]) if token.lastgroup not in ("comment", "space", "newline")
-    ]
-    last = tokens[-1]
-    has_comma = last.lastgroup == "comma"
-    start, rest = text[: last.end()], text[last.end() : -1]
-    start += "" if has_comma or len(tokens) == 1 else ","
-    if "\n" not in rest:
-        return f"{start} {value}{rest}]"
-    line = start.rpartition("\n")[2]
-    indent = line[: len(line) - len(line.lstrip())]
-    above, _, end = rest.rpartition("\n")
-    return f"{start}{above}\n{indent}{value}{',' * has_comma}\n{end}]"
+            array.insert(place, tomlkit.value(toml_value(item)))

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Any, Final, NamedTuple
 
+from autocolor.checks import shown
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.reading import text_problem
 from autocolor.scene.columns import Problem
@@ -52,55 +53,23 @@ def parsed_toml(data: bytes, place: str, what: str = "a scene file") -> dict[str
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(
-            f"{place}, line {line}: {what} must be text in UTF-8, not bytes like"
-            f" 0x{data[error.start]:02x}; save it as UTF-8"
-        ) from None
-    _check_bounds(text, place)
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(_syntax_problem(str(error), text, place)) from None
-    except (ValueError, ArithmeticError, LookupError, TypeError, RecursionError) as error:
-        raise InputError(f"{place}: it must be valid TOML ({error}); correct it") from None
-
-
-def _syntax_problem(message: str, text: str, place: str) -> str:
-    """The parser's error message as one of ours, with file and line."""
-    location = re.search(r" \(at line (\d+), column (\d+)\)$", message)
-    if location:
-        line, column = location[1], f"column {location[2]}"
-        message = message[: location.start()]
-    else:
-        line, column = str(text.rstrip("\n").count("\n") + 1), "the end of the file"
-        message = message.removesuffix(" (at end of document)")
-    reason = message[:1].lower() + message[1:200]
-    return f"{place}, line {line}: it must be valid TOML, but is not at {column} ({reason}); correct the line"
-
-
-def _check_bounds(text: str, place: str) -> None:
-    """Raise InputError for deep nesting, long dotted keys and long words, which are slow to parse."""
+        raise InputError(f"{place}, line {line}: {what} must be text in UTF-8; save it as UTF-8") from None
     nested, parts = 0, 1
     for token in TOKEN.finditer(text):
         kind = token.lastgroup
-        if kind in ("open", "close"):
-            nested = nested + 1 if kind == "open" else max(0, nested - 1)
-        if kind in ("open", "close", "newline", "comma", "equals"):
-            parts = 1
-        elif kind == "dot":
-            parts += 1
-        if nested > MOST_NESTED:
-            rule = f"brackets must be nested at most {MOST_NESTED} deep, not deeper; flatten them"
-        elif parts > MOST_KEY_PARTS:
-            rule = f"a key must have at most {MOST_KEY_PARTS} parts between dots, not more; shorten it"
-        elif kind == "word" and len(token[0]) > LONGEST_WORD:
-            rule = (
-                f"a number or a key must have at most {LONGEST_WORD} digits or letters, not"
-                f" {len(token[0]):,}; write it shorter, or in quotes"
+        nested = max(0, nested + (kind == "open") - (kind == "close"))
+        parts = parts + (kind == "dot") if kind in ("dot", "word", "string", "space") else 1
+        is_long = kind == "word" and len(token[0]) > LONGEST_WORD
+        if nested > MOST_NESTED or parts > MOST_KEY_PARTS or is_long:
+            raise InputError(
+                f"{place}, line {text.count(chr(10), 0, token.start()) + 1}: {what} must have at most"
+                f" {MOST_NESTED} brackets in each other, {MOST_KEY_PARTS} parts between the dots of a key and"
+                f" {LONGEST_WORD} letters or digits without quotes, not more; write it simpler"
             )
-        else:
-            continue
-        raise InputError(f"{place}, line {text.count(chr(10), 0, token.start()) + 1}: {rule}")
+    try:
+        return tomllib.loads(text)
+    except (ValueError, ArithmeticError, LookupError, TypeError) as error:
+        raise InputError(f"{place}: it must be valid TOML ({str(error)[-200:]}); correct it") from None
 
 
 class Statement(NamedTuple):
@@ -155,39 +124,16 @@ def _path(table: KeyPath, text: str, rows: dict[KeyPath, int], is_row: bool) -> 
     return path
 
 
-def key_lines(data: bytes) -> dict[KeyPath, int]:
-    """The line of each table and key of a valid TOML text, by its path; rows of arrays count from 0."""
-    text = data.decode().replace("\r\n", "\n")
-    lines: dict[KeyPath, int] = {}
-    line, before = 1, 0
-    for statement in statements_of(text):
-        line += text.count("\n", before, statement.start)
-        before = statement.start
-        for end in range(1, len(statement.path) + 1):
-            lines.setdefault(statement.path[:end], line)
-    return lines
-
-
 # Writing.
 
 BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
 
-def table_text(header: str, keys: Any) -> str:
-    """A table with a line for each key; a table of tables, such as flaps, has a line for each inner table."""
-    lines = [header] if header else []
-    for key, value in keys.items():
-        if (
-            isinstance(value, Mapping)
-            and value
-            and all(isinstance(inner, Mapping) for inner in value.values())
-        ):
-            lines += [
-                f"{toml_key(key)}.{toml_key(name)} = {toml_value(inner)}" for name, inner in value.items()
-            ]
-        else:
-            lines.append(f"{toml_key(key)} = {toml_value(value)}")
-    return "\n".join(lines) + "\n"
+def key_text(path: KeyPath, value: object) -> str:
+    """The line of a key; of a table of tables, such as flaps, a line for each inner table."""
+    if isinstance(value, Mapping) and value and all(isinstance(inner, Mapping) for inner in value.values()):
+        return "".join(key_text((*path, name), inner) for name, inner in value.items())
+    return f"{'.'.join(toml_key(str(name)) for name in path)} = {toml_value(value)}\n"
 
 
 def toml_key(name: str) -> str:
@@ -204,22 +150,17 @@ def toml_value(value: object) -> str:
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{toml_key(key)} = {toml_value(inner)}' for key, inner in value.items())} }}"
     if isinstance(value, (str, bool)):
+        if isinstance(value, str) and any("\ud800" <= letter <= "\udfff" for letter in value):
+            raise InputError(f"a text in a file must be valid in UTF-8, not {shown(value)}; rename it")
         # TOML has the escapes of JSON. What can be printed stays legible.
-        text = json.dumps(value, ensure_ascii=False)
-        return text if text.isprintable() else "".join(map(_legible, text))
+        letters = json.dumps(value, ensure_ascii=False)
+        return "".join(each if each.isprintable() else f"\\U{ord(each):08x}" for each in letters)
     return repr(value)
-
-
-def _legible(letter: str) -> str:
-    """The letter, or its escape in TOML if it cannot be printed."""
-    return letter if letter.isprintable() else f"\\U{ord(letter):08x}"
 
 
 # The problems of a file, with their lines, tables and keys.
 
 MOST_PROBLEMS: Final = 100
-
-LONGEST_SENTENCE: Final = 400
 
 
 class SceneProblems:
@@ -229,8 +170,7 @@ class SceneProblems:
         self.place = place
         self.data = data
         self.document = document
-        self.messages: list[tuple[int, str]] = []
-        self.all_missing = True
+        self.messages: list[tuple[int, str, bool]] = []
 
     @property
     def full(self) -> bool:
@@ -239,63 +179,58 @@ class SceneProblems:
 
     @cached_property
     def _lines(self) -> dict[KeyPath, int]:
-        return key_lines(self.data)
+        """The line of each table and key, by its path; rows of arrays count from 0."""
+        text = self.data.decode().replace("\r\n", "\n")
+        lines: dict[KeyPath, int] = {}
+        line, before = 1, 0
+        for statement in statements_of(text):
+            line += text.count("\n", before, statement.start)
+            before = statement.start
+            for end in range(1, len(statement.path) + 1):
+                lines.setdefault(statement.path[:end], line)
+        return lines
 
     def note(self, path: KeyPath, text: str) -> None:
         """Add a problem of the value at a path."""
         self.note_all([Problem(path, text)])
 
-    def note_all(self, problems: Iterable[Problem], path: KeyPath = (), *, is_missing: bool = False) -> None:
-        """Add problems of the table at a path; `is_missing` tells that they are only missing files."""
-        for problem in problems:
-            self.all_missing = self.all_missing and is_missing
-            if self.full:
-                return
-            whole = problem.under(path)
-            where, depth = self._table_of(whole.path)
-            if len(whole.path) == depth == 1 and whole.text.startswith("must "):
-                where, depth = "", 0
-            line = self._line(whole.path)
-            sentence = whole._replace(path=whole.path[depth:]).sentence
-            if len(sentence) > LONGEST_SENTENCE:
-                sentence = f"{sentence[:LONGEST_SENTENCE]}..."
-            at = f", line {line}" if line else ""
-            self.messages.append((line, f"{self.place}{at}, {where}{sentence}"))
+    def note_all(self, problems: Iterable[Problem], path: KeyPath = ()) -> None:
+        """Add problems of the table at a path."""
+        self.messages += [(*self._message(problem.under(path)), False) for problem in problems]
+        del self.messages[MOST_PROBLEMS:]
 
     def note_file(self, path: KeyPath, error: InputError) -> None:
         """Add the problems of a mesh file; their messages name the file. `path` is the key that names it."""
-        if isinstance(error, MissingInputError):
-            missing = [Problem(path, sentence, names_key=True) for sentence in error.problems]
-            self.note_all(missing, is_missing=True)
-        else:
-            self.all_missing = False
-            own = [(self._line(path), sentence) for sentence in error.problems]
-            self.messages += own[: MOST_PROBLEMS - len(self.messages)]
+        is_missing = isinstance(error, MissingInputError)
+        line = self._line(path)
+        start = f"{self.place}, line {line}: " if is_missing else ""
+        self.messages += [(line, f"{start}{sentence}", is_missing) for sentence in error.problems]
+        del self.messages[MOST_PROBLEMS:]
 
     def raise_any(self) -> None:
         """Raise InputError with all problems, if any; MissingInputError if only files are missing."""
-        sentences = [sentence for _, sentence in sorted(self.messages, key=lambda message: message[0])]
+        sentences = [sentence for _, sentence, _ in sorted(self.messages, key=lambda message: message[0])]
         if self.full:
             sentences.append(f"{self.place}: there may be more problems; correct these first")
         if sentences:
-            raise MissingInputError(sentences) if self.all_missing else InputError(sentences)
+            all_missing = all(is_missing for *_, is_missing in self.messages)
+            raise MissingInputError(sentences) if all_missing else InputError(sentences)
+
+    def _message(self, problem: Problem) -> tuple[int, str]:
+        """The line of a problem, and its sentence with the file, the line, the table and the key."""
+        path = problem.path
+        table, key = (*path, "", "")[:2]
+        where, depth = "", 0
+        if isinstance(key, int):
+            name = row.get("name") if isinstance(row := self.document[str(table)][key], dict) else None
+            where, depth = f"{table}[{key + 1}]{f' {name[:60]!r}' if isinstance(name, str) else ''}: ", 2
+        elif table in ("surfaces", "parts") and len(path) > 1:
+            where, depth = f"[{table}.{key[:60]}]: ", 2
+        line = self._line(path)
+        sentence = problem._replace(path=path[depth:]).sentence
+        return line, f"{self.place}{f', line {line}' if line else ''}, {where}{sentence}"
 
     def _line(self, path: KeyPath) -> int:
         """The line of a path, or of the nearest table around it; 0 if the file has neither."""
         around = [path[:end] for end in range(len(path), 0, -1)]
         return next((self._lines[table] for table in around if table in self._lines), 0)
-
-    def _table_of(self, path: KeyPath) -> tuple[str, int]:
-        """The label of a path's table, as in "lights[1] 'key': ", and how many parts of the path it names.
-
-        Rows are counted from 1.
-        """
-        table, key = (*path, "", "")[:2]
-        if isinstance(key, int):
-            rows = self.document.get(str(table))
-            row = rows[key] if isinstance(rows, list) else None
-            name = row.get("name") if isinstance(row, dict) else None
-            return f"{table}[{key + 1}]{f' {name[:60]!r}' if isinstance(name, str) else ''}: ", 2
-        if table in ("surfaces", "parts") and len(path) > 1:
-            return f"[{table}.{key[:60]}]: ", 2
-        return ("[view]: ", 1) if table == "view" else ("", 0)

@@ -15,7 +15,7 @@ import sqlite3
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
@@ -29,112 +29,120 @@ from autocolor.errors import (
     WriteError,
     reason_of,
 )
-from autocolor.files.reading import opened, read_head, refuse_irregular, require_size, status_of
-from autocolor.files.writing import write_atomically
+from autocolor.files.reading import opened, require_size, status_of
+from autocolor.files.writing import status_numbers, write_atomically
 
 BEGINS: Final = b"SQLite format 3\0"
-MODES: Final = slice(18, 20)
-"""The place of two bytes in the header of a file that are 2 in WAL mode, and 1 otherwise."""
 
 GROWTH: Final = 3.5
 """Measured: how many times its size the store of a scene takes while it is read."""
 
-LONGEST_TEXT: Final = 1 << 20
-"""Limit: in bytes, of a value and of a row."""
+LONGEST_TEXT: Final = 1 << 17
+"""Limit: in bytes, of a value and of a row. SQLite cannot interrupt a function: searching a text of this
+length for one of half its length takes 0.2 s."""
 
 SECONDS_OF_WAITING: Final = 5.0
 """Limit: how long to wait for another program that is writing."""
 
 
-def in_memory() -> sqlite3.Connection:
-    """A new store in memory. Raises UnavailableError if this Python's SQLite lacks what a store needs."""
+def in_memory(data: bytes | None = None) -> sqlite3.Connection:
+    """A store in memory, with the content of a file or empty.
+
+    Raises UnavailableError if this Python's SQLite lacks what a store needs.
+    """
     # The first version with STRICT tables.
     if sqlite3.sqlite_version_info < (3, 37) or not hasattr(sqlite3.Connection, "serialize"):
         raise UnavailableError(
             "a store must have SQLite 3.37 or later with sqlite3_serialize, and this Python has"
             f" {sqlite3.sqlite_version}; use another Python"
         )
-    return _connected()
-
-
-def _connected(path: Path | None = None, mode: str = "memory") -> sqlite3.Connection:
-    """A connection that begins no transaction by itself, with limits; nothing of its file is run."""
-    place = Path(os.path.realpath(path)).as_uri() if path else "file:"
-    uri = f"{place}?mode={mode}"
-    connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=SECONDS_OF_WAITING)
-    with closed_on_error(connection):
-        for limit in (sqlite3.SQLITE_LIMIT_LENGTH, sqlite3.SQLITE_LIMIT_SQL_LENGTH):
-            connection.setlimit(limit, LONGEST_TEXT)
-        # No function that compares with a pattern can be interrupted.
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)
-        for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
-            connection.execute(f"PRAGMA {pragma}")
-        if sys.version_info >= (3, 12):
-            connection.setconfig(sqlite3.SQLITE_DBCONFIG_DEFENSIVE, True)
+    connection = _connected("file:?mode=memory")
+    if data is not None:
+        connection.deserialize(data)
     return connection
 
 
-@contextmanager
-def closed_on_error(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
-    """The connection, which is closed if the body fails."""
-    try:
-        yield connection
-    except BaseException:
-        connection.close()
-        raise
+def _connected(uri: str) -> sqlite3.Connection:
+    """A connection that begins no transaction by itself, with limits; nothing of its file is run."""
+    connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=SECONDS_OF_WAITING)
+    connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_TEXT)
+    # No function that compares with a pattern can be interrupted.
+    connection.setlimit(sqlite3.SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)
+    for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "foreign_keys=OFF"):
+        connection.execute(f"PRAGMA {pragma}")
+    return connection
 
 
-def copied(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """A copy of a store in memory. Raises sqlite3.Error."""
-    data = bytearray(connection.serialize())
-    # Nothing in memory is in WAL mode.
-    data[MODES] = b"\1\1"
-    with closed_on_error(in_memory()) as copy:
-        copy.deserialize(data)
-    return copy
+def _content(connection: sqlite3.Connection) -> bytes:
+    """The bytes of a store. Raises sqlite3.Error."""
+    data = connection.serialize()
+    # Two bytes of the header say whether the store is in WAL mode. Nothing in memory is.
+    return b"\1\1".join((data[:18], data[20:]))
 
 
-def loaded(path: Path) -> sqlite3.Connection:
-    """A copy in memory of the store at a path, with what its `-wal` holds.
+def store_content(path: Path) -> bytes:
+    """The content of the store at a path, with what its `-wal` holds.
 
     If a program was killed while it changed the store, SQLite first takes that change back, by the `-journal`
     beside it. Raises InputError, MissingInputError.
     """
-    is_logged, played = _is_in_wal_mode(path), played_files(path)
-    mode = "ro"
-    if "-journal" in played:
-        mode = "rw"
-    elif is_logged and not played:
-        # SQLite makes a log even to read. Where it cannot, the file is complete without.
-        mode = "ro&immutable=1" if _write_protected(path) else "rw"
-    with refusals(path.name), closing(_connected(path, mode)) as file:
+    with refusals(path.name), closing(_opened(path)) as file:
         file.execute("BEGIN")
         file.execute("SELECT count(*) FROM sqlite_master").fetchone()
-        return copied(file)
+        return _content(file)
+
+
+def _opened(path: Path, is_written: bool = False) -> sqlite3.Connection:
+    """A connection to the store at a path, which lets it be written if SQLite must.
+
+    Raises InputError if the file is not regular, too large, or no store, or if SQLite would delete another
+    file (see `files_to_play`); MissingInputError.
+    """
+    with opened(path) as (file, status):
+        require_size(path.name, status.st_size, GROWTH)
+        if file.read(len(BEGINS)) != BEGINS:
+            raise InputError(
+                f"{path.name}: a store must be an SQLite file, and this one does not begin as such; remove"
+                " it, or choose another file"
+            )
+    # A connection that could write would move a log into the store when it is closed.
+    mode = "ro" if "-wal" in files_to_play(path) and not is_written else "rw"
+    return _connected(f"{Path(os.path.realpath(path)).as_uri()}?mode={mode}")
 
 
 @contextmanager
-def replacing(
-    path: Path, check: Callable[[], None]
-) -> Iterator[tuple[sqlite3.Connection, Callable[[bytes], None]]]:
-    """A copy in memory of the store at a path, and a function that replaces the store by the bytes given.
+def replacing(path: Path, check: Callable[[], None]) -> Iterator[tuple[bytes, Callable[[bytes], None]]]:
+    """The content of the store at a path, and a function that replaces it.
 
     Until the end SQLite's own lock keeps other programs from changing the store. `check` is called first
-    under this lock. After any error the copy is closed. Raises InputError, MissingInputError; OutputError if
-    the place is write-protected, and WriteError if another program goes on writing, or replaces the store.
+    under this lock. What a log beside the store holds is moved into the store, because SQLite would play it
+    into the next file of this name; the store then is no longer in WAL mode. Raises InputError,
+    MissingInputError; OutputError if the place is write-protected, and WriteError if another program goes on
+    writing, or replaces the store meanwhile.
     """
-    is_logged, played = _is_in_wal_mode(path), played_files(path)
-    is_logged |= "-wal" in played
-    if place := _write_protected(path):
+    before = status_of(path)
+    if not os.access(path, os.W_OK):
         raise OutputError(
-            f"an output must be where it can be written, and {place} is write-protected; change its"
-            " permissions, or write to another file"
+            f"{path.name}: a store must let itself be written to be changed, and is write-protected; change"
+            " its permissions, or write to another file"
         )
-    with refusals(path.name, is_written=True), closing(_locked(path, check, is_logged)) as file:
-        before = _numbers(path)
+    with refusals(path.name, WriteError), closing(_opened(path, is_written=True)) as file:
+        file.execute("BEGIN IMMEDIATE")
+        check()
+        if file.execute("PRAGMA journal_mode").fetchone() == ("wal",):
+            for statement in ("COMMIT", "PRAGMA journal_mode = DELETE", "BEGIN IMMEDIATE"):
+                file.execute(statement)
+        if not os.path.samestat(before, status_of(path)):
+            # Another program of ours replaced the store while this one waited for the lock of the old file.
+            file.close()
+            with replacing(path, check) as pair:
+                yield pair
+            return
+
+        present = status_numbers(path)
 
         def save(data: bytes) -> None:
-            if _numbers(path) != before:
+            if status_numbers(path) != present:
                 raise WriteError(
                     f"{path.name}: a store must stay as it is while it is changed, and another program"
                     " replaced it; nothing was saved, so try again"
@@ -144,64 +152,14 @@ def replacing(
                 file.close()
             write_atomically(path, data, overwrite=True)
 
-        with closed_on_error(copied(file)) as copy:
-            yield copy, save
+        yield _content(file), save
 
-
-def _locked(path: Path, check: Callable[[], None], is_logged: bool) -> sqlite3.Connection:
-    """A connection to the store at a path in a transaction that lets no other program change it.
-
-    What a log beside the store holds is moved into the store, because SQLite would play it into the next file
-    of this name, whatever that holds. The store then is no longer in WAL mode.
-    """
-    while True:
-        before = _numbers(path)
-        with closed_on_error(_connected(path, "rw")) as file:
-            if is_logged:
-                file.execute("PRAGMA locking_mode = EXCLUSIVE")
-            file.execute("BEGIN IMMEDIATE")
-            check()
-            if is_logged:
-                # The lock stays.
-                for statement in ("COMMIT", "PRAGMA journal_mode = DELETE", "BEGIN IMMEDIATE"):
-                    file.execute(statement)
-            if _numbers(path)[:2] == before[:2]:
-                return file
-        # Another program of ours replaced the store while this one waited for the lock of the old file.
-        file.close()
-
-
-def _numbers(path: Path) -> tuple[int, ...]:
-    """Numbers that tell one file at a path from another, and a file from a changed one."""
-    status = status_of(path)
-    return status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size
-
-
-# Checks of a file, and of the files beside it, before SQLite opens it. They open no file that is locked by
-# this process, because closing it would end the locks.
 
 JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
 """The bytes that follow the name of a super-journal at the end of a rollback journal."""
 
 
-def _is_in_wal_mode(path: Path) -> bool:
-    """Whether a store is in WAL mode.
-
-    Raises InputError if it is no regular file, too large, or does not begin as a store; MissingInputError.
-    """
-    status = status_of(path)
-    refuse_irregular(path, status)
-    require_size(path.name, status.st_size, GROWTH)
-    head = read_head(path)
-    if not head.startswith(BEGINS):
-        raise InputError(
-            f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
-            " again with `autocolor convert`"
-        )
-    return 2 in head[MODES]
-
-
-def played_files(path: Path) -> list[str]:
+def files_to_play(path: Path) -> list[str]:
     """The endings of the files beside a store that SQLite plays into it: "-journal", "-wal".
 
     SQLite takes a change back by the journal of a program that was killed; a journal that a program keeps for
@@ -211,82 +169,50 @@ def played_files(path: Path) -> list[str]:
     """
     endings = []
     for ending in ("-journal", "-wal"):
-        try:
-            with opened(Path(os.path.realpath(path) + ending)) as (file, status):
-                if any(file.read(1)):
-                    endings.append(ending)
-                file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
-                names_another = ending == "-journal" and file.read() == JOURNAL_MAGIC
-        except MissingInputError:
-            continue
-        if names_another:
-            raise InputError(
-                f"{path.name}: the -journal beside the store names another file, which SQLite deletes when it"
-                " rolls the journal back; if you trust both files, open the store once with `sqlite3 FILE"
-                " .tables`, otherwise move the journal away"
-            )
+        with suppress(MissingInputError), opened(Path(os.path.realpath(path) + ending)) as (file, status):
+            if any(file.read(1)):
+                endings.append(ending)
+            file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
+            if ending == "-journal" and file.read() == JOURNAL_MAGIC:
+                raise InputError(
+                    f"{path.name}: the -journal beside the store names another file, which SQLite deletes"
+                    " when it rolls the journal back; if you trust both files, open the store once with"
+                    " `sqlite3 FILE .tables`, otherwise move the journal away"
+                )
     return endings
 
 
-def refuse_remains(path: Path) -> None:
-    """Raise WriteError if SQLite would play a journal or a log into a new store at a path."""
-    try:
-        played = played_files(path)
-    except InputError as error:
-        raise WriteError(str(error)) from None
-    if played:
-        raise WriteError(
-            f"{path.name}: a new store must have no {path.name}{played[0]} beside it, because SQLite would"
-            " play it into the store; move it away"
-        )
-
-
-def _write_protected(path: Path) -> Path | None:
-    """The store at a path or its folder, if it is write-protected."""
-    places = (path, Path(os.path.realpath(path)).parent)
-    return next((place for place in places if not os.access(place, os.W_OK)), None)
-
-
-# Limits of statements.
-
-READING_PRAGMAS: Final = ("index_info", "index_list", "table_info", "table_list", "table_xinfo")
-"""The pragmas that only read, whatever their argument."""
-
-UNSAFE_FUNCTIONS: Final = {"load_extension", "fts3_tokenizer", "match", "matchinfo", "snippet", "offsets"} | {
-    *("optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode")
+UNSAFE_FUNCTIONS: Final = {
+    *("load_extension", "fts3_tokenizer", "match", "matchinfo", "snippet", "offsets", "optimize", "bm25"),
+    *("highlight", "fts5", "rtreecheck", "rtreedepth", "rtreenode"),
 }
 """The functions that run other code, or read the inner tables of full-text and R-tree indexes, which may be
 damaged."""
 
-READS: Final = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
 CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
 
-Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int]
 
-
-def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Authorizer:
+def authorizer(may_change: bool, changed: set[str]) -> Callable[..., int]:
     """The permissions of a statement: it may read, compute and, with `may_change`, change rows itself.
 
     A change by a trigger of the file is refused. The tables that the statement changes, or would change, are
     added to `changed`.
     """
 
-    def permission(
-        action: int, first: str | None, second: str | None, database: str | None, inner: str | None
-    ) -> int:
-        name = (first or "").lower()
-        if action == sqlite3.SQLITE_FUNCTION:
-            is_allowed = (second or "").lower() not in UNSAFE_FUNCTIONS
-        elif action == sqlite3.SQLITE_PRAGMA:
-            is_allowed = name in READING_PRAGMAS or (
-                name in ("application_id", "user_version") and second is None
+    def permission(action: int, first: str | None, second: str | None, _: object, inner: object) -> int:
+        name = str(second if action == sqlite3.SQLITE_FUNCTION else first).lower()
+        if action in CHANGES:
+            changed.add(name)
+        is_allowed = (
+            action in (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_RECURSIVE)
+            or (action == sqlite3.SQLITE_FUNCTION and name not in UNSAFE_FUNCTIONS)
+            # These only read, whatever their argument.
+            or (
+                action == sqlite3.SQLITE_PRAGMA
+                and name in ("index_list", "table_info", "table_list", "table_xinfo")
             )
-        elif action in CHANGES:
-            is_allowed = may_change and inner is None
-            if changed is not None:
-                changed.add(name)
-        else:
-            is_allowed = action in READS
+            or (action in CHANGES and may_change and inner is None)
+        )
         return sqlite3.SQLITE_OK if is_allowed else sqlite3.SQLITE_DENY
 
     return permission
@@ -294,24 +220,21 @@ def authorizer(may_change: bool = False, changed: set[str] | None = None) -> Aut
 
 @contextmanager
 def limited(
-    connection: sqlite3.Connection, permission: Authorizer, seconds: float, late: AutocolorError
-) -> Iterator[None]:
-    """Permissions and time of the statements in the body. Raises `late` if they take longer."""
+    connection: sqlite3.Connection, seconds: float, late: AutocolorError, may_change: bool = False
+) -> Iterator[set[str]]:
+    """Permissions and time of the statements in the body. Raises `late` if they take longer.
+
+    The set has the tables that they change, or would change.
+    """
+    changed: set[str] = set()
     until = time.monotonic() + seconds
-    is_late = False
-
-    def look() -> int:
-        nonlocal is_late
-        is_late = time.monotonic() > until
-        return int(is_late)
-
-    connection.set_authorizer(permission)
+    connection.set_authorizer(authorizer(may_change, changed))
     # A step of SQLite's machine can be a slow function.
-    connection.set_progress_handler(look, 1000)
+    connection.set_progress_handler(lambda: time.monotonic() > until, 1000)
     try:
-        yield
+        yield changed
     except sqlite3.OperationalError as error:
-        if is_late:
+        if time.monotonic() > until:
             raise late from None
         if "interrupted" in str(error):
             # The user pressed Ctrl+C, which SQLite took.
@@ -322,19 +245,14 @@ def limited(
         connection.set_progress_handler(None, 0)
 
 
-# Errors of SQLite as errors of this package.
-
-BUSY_ERRORS: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
-DISK_ERRORS: Final = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
-PLACE_ERRORS: Final = (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
-DAMAGE_ERRORS: Final = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 SQL_ERRORS: Final = (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError)
 
+PROTECTED: Final = "the store and its folder must let SQLite open it, and do not ({}); copy all of its files"
 SENTENCES: Final = {
-    BUSY_ERRORS: "another program is writing to the store, or has it open in WAL mode; close it",
-    (sqlite3.SQLITE_TOOBIG,): f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it",
-    PLACE_ERRORS: "the store and its folder must let SQLite open it, and do not ({}); copy all of its files",
-    DISK_ERRORS: "the disk must hold the store, and is full or fails ({}); make room, and try again",
+    sqlite3.SQLITE_BUSY: "another program is writing to the store, or has it open in WAL mode; close it",
+    sqlite3.SQLITE_TOOBIG: f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it",
+    sqlite3.SQLITE_READONLY: PROTECTED,
+    sqlite3.SQLITE_CANTOPEN: PROTECTED,
 }
 DAMAGED: Final = (
     "the store cannot be read ({}); if it is damaged, bring a copy back, or rescue it with `sqlite3 FILE"
@@ -347,21 +265,11 @@ def primary_code(error: BaseException) -> int:
     return getattr(error, "sqlite_errorcode", 0) & 0xFF
 
 
-def sentence_of(error: Exception) -> str:
-    """A sentence for an error of SQLite: what is wrong with the store, and what to do."""
-    code = primary_code(error)
-    sentence = next((each for codes, each in SENTENCES.items() if code in codes), DAMAGED)
-    return sentence.format(printable(reason_of(error)[:300]))
-
-
 @contextmanager
-def refusals(name: str, is_written: bool = False) -> Iterator[None]:
-    """Raise errors of SQLite as InputError, with advice; `name` is the file's name in the message.
-
-    If the store `is_written`, the errors that keep it from being written are raised as WriteError.
-    """
+def refusals(name: str, kind: type[AutocolorError] = InputError) -> Iterator[None]:
+    """Raise errors of SQLite as another kind, with advice; `name` is the file's name in the message."""
     try:
         yield
     except SQL_ERRORS as error:
-        is_kept = is_written and primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS, *PLACE_ERRORS)
-        raise (WriteError if is_kept else InputError)(f"{name}: {sentence_of(error)}") from None
+        sentence = SENTENCES.get(primary_code(error), DAMAGED).format(printable(reason_of(error)[:300]))
+        raise kind(f"{name}: {sentence}") from None

@@ -1,8 +1,8 @@
 """The rows of a store as a scene, and a scene as rows.
 
-Measured, for a million nodes and a million quads: `np.fromiter` of whole rows takes 1.7 s, `fetchall` and
-`np.array` take 3.6 s, chunks of `fetchmany` 3 s. To look at all types takes half as long as
-reading, so only tables of another definition than ours are looked at.
+Measured, for a million nodes and a million quads: `np.fromiter` of whole rows takes half as long as
+`fetchall` and `np.array`. To look at all types takes half as long as reading, so only tables of another
+definition than ours are looked at.
 """
 
 from __future__ import annotations
@@ -10,13 +10,11 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import count as counted
-from itertools import islice
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
 from autocolor.arrays import AnyArray, Indices, Numbers
-from autocolor.budget import require_memory
 from autocolor.checks import LARGEST_COORDINATE, nearest, shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
@@ -25,15 +23,10 @@ from autocolor.files.store.connections import DAMAGED
 from autocolor.files.store.schema import (
     AXES,
     DEFINITIONS,
-    MESH,
     NODES,
-    NUMBER,
     POLYGONS,
     ROW_TABLES,
-    SCALARS,
-    SCENE,
     VALUES,
-    RowTable,
     StoredTables,
     plain_row,
     quoted,
@@ -51,12 +44,7 @@ from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON, MeshScalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 
-BYTES_OF_ROW: Final = 120
-"""Measured: bytes that a row of the nodes or polygons takes while it is read, however small it is stored."""
-
-MOST_PROBLEMS: Final = 100
-MOST_MESH_PROBLEMS: Final = 5
-"""Limit: the problems of one kind in the tables of the mesh."""
+CORNERS: Final = ("node1", "node2", "node3", "node4")
 
 
 def report_of(
@@ -73,18 +61,29 @@ def report_of(
         if table.name not in tables:
             continue
         rows = [plain_row(table.columns, row) for row in rows_of_table(connection, tables, table.name)]
-        if table.name == SCENE:
+        if table.name == "scene":
             fields.update(*({**OMITTED, **row} for row in rows))
-        elif table.name == PARTS:
+            continue
+        validated: list[Row] = []
+        for number, row in enumerate(rows):
+            try:
+                if table.row_class is Surface and isinstance(called := row.get("name"), str):
+                    validated.append(replaced(default_surface(called, number), row))
+                else:
+                    # A part without a surface gets one when the scene is made.
+                    start = {"surface": UNASSIGNED} if table.row_class is Part else {}
+                    validated.append(from_plain(table.row_class, {**start, **row}))
+            except RowError as error:
+                found = (problem.sentence for problem in error.row_problems)
+                problems.extend(f"{table.name}, row {number + 1}: {sentence}" for sentence in found)
+        if table.name == PARTS:
             parts = {str(row.get("name")): row for row in rows}
             if len(parts) < len(rows):
                 problems.append(f"{PARTS}: names must be unique, not repeated; rename one")
-            _validated(table, rows, problems)
         elif rows or not table.is_single:
-            values = _validated(table, rows, problems)
-            fields[table.name] = values[0] if table.is_single and values else values
+            fields[table.name] = validated[0] if table.is_single and validated else tuple(validated)
     if problems:
-        raise InputError(problems[:MOST_PROBLEMS])
+        raise InputError(problems[:100])
     mesh = mesh_of(connection, tables, tuple(parts))
     of_part = {name: {key: row[key] for key in row if key != "name"} for name, row in parts.items()}
     materials = {}
@@ -96,132 +95,82 @@ def report_of(
     return scene_report([MeshReport(mesh, material_of_part=materials)], parts=of_part, **fields)
 
 
-def _validated(table: RowTable, rows: list[dict[str, Any]], problems: list[str]) -> tuple[Row, ...]:
-    """The valid rows of a table. The problems of other rows are added to `problems`, with their places."""
-    validated: list[Row] = []
-    for number, row in enumerate(rows):
-        try:
-            if table.row_class is Surface and isinstance(name := row.get("name"), str):
-                validated.append(replaced(default_surface(name, number), row))
-            else:
-                # A part without a surface gets one when the scene is made.
-                start = {"surface": UNASSIGNED} if table.row_class is Part else {}
-                validated.append(from_plain(table.row_class, {**start, **row}))
-        except RowError as error:
-            found = (problem.sentence for problem in error.row_problems)
-            problems.extend(f"{table.name}, row {number + 1}: {sentence}" for sentence in found)
-    return tuple(validated)
-
-
-# The mesh.
-
-
-class NumberColumn(NamedTuple):
-    """A column of numbers of the mesh: what a value must be, in words and in SQL, and its dtype."""
-
-    rule: str
-    condition: str = "typeof({}) = 'integer'"
-    dtype: type = np.int64
-
-
-COORDINATE: Final = NumberColumn(
-    "a number of at most 1e30 in size",
-    f"typeof({{0}}) IN ('real', 'integer') AND {{0}} BETWEEN -{LARGEST_COORDINATE} AND {LARGEST_COORDINATE}",
-    np.float64,
-)
-CORNERS: Final = {
-    **dict.fromkeys(("node1", "node2", "node3"), NumberColumn("a node number")),
-    "node4": NumberColumn("a node number, or NULL for a triangle", "typeof({}) IN ('integer', 'null')"),
+COLUMNS: Final[Mapping[str, Mapping[str, Any]]] = {
+    NODES: {"node": int, **dict.fromkeys(AXES, float)},
+    POLYGONS: dict.fromkeys(("polygon", *CORNERS), int),
+    **{table: {of: int, "value": float} for of, table in VALUES.items()},
 }
-COLUMNS: Final[Mapping[str, Mapping[str, NumberColumn]]] = {
-    NODES: {"node": NumberColumn("a whole number"), **dict.fromkeys(AXES, COORDINATE)},
-    POLYGONS: {"polygon": NumberColumn("a whole number"), **CORNERS},
-    **{
-        table: {of: NumberColumn(f"the number of a {of}"), "value": COORDINATE}
-        for of, table in VALUES.items()
-    },
-}
-"""The columns of numbers of the tables of the mesh. The first one counts the rows."""
+"""The columns of numbers of the tables of the mesh, and their types. The first one counts the rows."""
 
 
 def mesh_of(connection: sqlite3.Connection, tables: StoredTables, part_names: tuple[str, ...]) -> Mesh:
     """The mesh of a store. If `part_names` is empty, the polygons name the parts.
 
-    Raises InputError with the first problems, row by row.
+    Raises InputError with the first problem.
     """
     nodes = _numbers_in(connection, tables, NODES)
     polygons = _numbers_in(connection, tables, POLYGONS)
     numbers = {NODE: nodes["node"], POLYGON: polygons["polygon"]}
     corners = np.stack([polygons[corner] for corner in CORNERS], axis=1)
     node_numbers = _rows_of(corners, numbers[NODE])
-    _raise_any(
-        f"{POLYGONS}, row {polygons['polygon'][row]}: node {corners[row, corner]} is not in the node table;"
-        " correct it"
-        for row, corner in zip(*np.nonzero(node_numbers < 0), strict=True)
-    )
+    for row, corner in np.argwhere(node_numbers < 0):
+        raise InputError(
+            f"{POLYGONS}, row {polygons['polygon'][row]}: node {corners[row, corner]} is not in the node"
+            " table; correct it"
+        )
     part_numbers, names = np.zeros(len(polygons), np.intp), part_names or (PART,)
     if "part" in tables[POLYGONS]:
         part_numbers, names = _parts(connection, numbers[POLYGON], part_names)
-    found = (row.get("crease_angle") for row in rows_of_table(connection, tables, MESH))
-    angles: list[Any] = [angle for angle in found if angle is not None]
+    angles = [row.get("crease_angle") for row in rows_of_table(connection, tables, "mesh")]
     return Mesh(
         np.stack([nodes[axis] for axis in AXES], axis=1),
         node_numbers,
         part_numbers,
         names,
-        next(iter(angles), CREASE_ANGLE),
+        next((angle for angle in angles if angle is not None), CREASE_ANGLE),  # type: ignore[arg-type]
         tuple(_scalars(connection, tables, numbers)),
     )
-
-
-def _raise_any(problems: Iterable[str]) -> None:
-    """Raise InputError with the first different problems, if any."""
-    # The third node of a triangle is its fourth too.
-    if first := list(dict.fromkeys(islice(problems, 2 * MOST_MESH_PROBLEMS))):
-        raise InputError(first[:MOST_MESH_PROBLEMS])
 
 
 def _numbers_in(
     connection: sqlite3.Connection, tables: StoredTables, table: str, where: str = "", *values: str
 ) -> AnyArray:
     """The numbers of a table of the mesh, a structured array, with rising numbers of its rows."""
-    columns = COLUMNS[table]
-    key, *_ = columns
-    stored = [name for name in columns if name != "node4" or name in tables[table]]
-    require_names(f"{table} must have the columns", stored, tables[table])
-    # A damaged index could have other rows than its table. The tables of scalars are indexes themselves.
-    source = f"{table} {where or 'NOT INDEXED'}"
+    types = COLUMNS[table]
+    columns = [*types]
+    require_names(f"{table} must have the columns", columns, tables[table])
+    # A triangle repeats its third node. A damaged index could have other rows than its table. The tables of
+    # scalars are indexes themselves.
+    asked = ", ".join(columns).replace("node4", "ifnull(node4, node3)")
+    query = f"SELECT {asked} FROM {table} {where or 'NOT INDEXED'} ORDER BY {columns[0]}"
 
-    def refuse() -> None:
-        wrong = [f"NOT ({columns[name].condition.format(name)})" for name in stored]
-        query = f"SELECT {key}, {', '.join(stored + wrong)} FROM {source} {'AND' if where else 'WHERE'}"
-        _raise_any(
-            f"{table}, row {shown(number)}: {name} must be {columns[name].rule}, not"
-            f" {'missing' if value is None else shown(value)}; correct it"
-            for number, *pairs in connection.execute(f"{query} ({' OR '.join(wrong)})", values)
-            for name, value, is_wrong in zip(stored, pairs, pairs[len(stored) :], strict=False)
-            if is_wrong
-        )
+    def refuse_wrong() -> None:
+        for row in connection.execute(query, values):
+            for (name, kind), value in zip(types.items(), row, strict=True):
+                if not isinstance(value, (int, kind)) or abs(value) > LARGEST_COORDINATE:
+                    rule = (
+                        "a whole number"
+                        if kind is int
+                        else f"a number of at most {LARGEST_COORDINATE:g} in size"
+                    )
+                    given = "missing" if value is None else shown(value)
+                    place = f"{table}, row {shown(row[0])}"
+                    raise InputError(f"{place}: {name} must be {rule}, not {given}; correct it")
 
+    # STRICT tables have the right types, but not the right sizes.
     sql = connection.execute("SELECT sql FROM sqlite_master WHERE name = ?", (table,)).fetchone()
     if sql != (DEFINITIONS[table],):
-        refuse()
-    (count,) = connection.execute(f"SELECT count(*) FROM {source}", values).fetchone()
-    require_memory(BYTES_OF_ROW * count, f"{table}: to read {count:,} rows", "leave rows out")
-    fourth = {"node4": "ifnull(node4, node3)" if "node4" in stored else "node3"}
-    rows = connection.execute(
-        f"SELECT {', '.join(fourth.get(name, name) for name in columns)} FROM {source} ORDER BY {key}", values
-    )
+        refuse_wrong()
     try:
-        numbers = np.fromiter(rows, [(name, column.dtype) for name, column in columns.items()], count)
+        numbers = np.fromiter(connection.execute(query, values), [*types.items()])
     except (ValueError, TypeError):
         raise InputError(DAMAGED.format(f"a row of {table}")) from None
     if not all((np.abs(numbers[name]) <= LARGEST_COORDINATE).all() for name in columns):
-        refuse()
-    _raise_any(
-        f"{table}: rows must have different numbers, and {number} is repeated; number them anew"
-        for number in numbers[key][1:][np.diff(numbers[key]) == 0]
-    )
+        refuse_wrong()
+    for number in numbers[columns[0]][1:][np.diff(numbers[columns[0]]) == 0]:
+        raise InputError(
+            f"{table}: rows must have different numbers, and {number} is repeated; number them anew"
+        )
     return numbers
 
 
@@ -237,18 +186,17 @@ def _parts(
     connection: sqlite3.Connection, polygons: Numbers, names: tuple[str, ...]
 ) -> tuple[Indices, tuple[str, ...]]:
     """The part number of each of the polygons, and the names of the parts, new ones if `names` is empty."""
-    rows = connection.execute(f"SELECT part FROM {POLYGONS} NOT INDEXED ORDER BY polygon")
     number_of: dict[Any, int] = {name: number for number, name in enumerate(names)}
-    numbers = (number_of.setdefault(name, len(number_of)) for (name,) in rows)
-    part_numbers = np.fromiter(numbers, np.intp)
-    found = tuple(number_of)
-    wrong = [number_of[name] for name in found if not isinstance(name, str) or (names and name not in names)]
-    _raise_any(
-        f"{POLYGONS}, row {polygons[row]}: part must be {'in the part table' if names else 'a name'}, not"
-        f" {shown(name := found[part_numbers[row]])}{nearest(str(name), names) or '; correct it'}"
-        for row in np.flatnonzero(np.isin(part_numbers, wrong))
-    )
-    return part_numbers, found
+    rows = connection.execute(f"SELECT part FROM {POLYGONS} NOT INDEXED ORDER BY polygon")
+    part_numbers = np.fromiter((number_of.setdefault(name, len(number_of)) for (name,) in rows), np.intp)
+    for name, number in number_of.items():
+        if not isinstance(name, str) or (names and number >= len(names)):
+            rule = "in the part table" if names else "a name"
+            raise InputError(
+                f"{POLYGONS}, row {polygons[np.argmax(part_numbers == number)]}: part must be {rule}, not"
+                f" {shown(name)}{nearest(str(name), names) or '; correct it'}"
+            )
+    return part_numbers, tuple(number_of)
 
 
 def _scalars(
@@ -256,67 +204,56 @@ def _scalars(
 ) -> Iterator[MeshScalar]:
     """The scalars of the mesh; a value is missing if it is NULL or has no row."""
     described: list[tuple[Any, Any]] = [
-        (row.get("name"), row.get("of")) for row in rows_of_table(connection, tables, SCALARS)
+        (row.get("name"), row.get("of")) for row in rows_of_table(connection, tables, "mesh_scalars")
     ]
     for name, of in described[: MOST_SCALARS + 1]:
         values = np.full(len(numbers.get(of, ())), np.nan)
         if of in VALUES and VALUES[of] in tables:
-            pairs = _numbers_in(
-                connection, tables, VALUES[of], "WHERE scalar = ? AND value IS NOT NULL", name
-            )
+            where = "WHERE scalar = ? AND value IS NOT NULL"
+            pairs = _numbers_in(connection, tables, VALUES[of], where, name)
             rows = _rows_of(pairs[of], numbers[of])
-            _raise_any(
-                f"{VALUES[of]}, scalar {shown(name)}: {of} {number} is not in the {of} table; remove it"
-                for number in pairs[of][rows < 0]
-            )
+            for number in pairs[of][rows < 0]:
+                raise InputError(
+                    f"{VALUES[of]}, scalar {shown(name)}: {of} {number} is not in the {of} table; remove it"
+                )
             values[rows] = pairs["value"]
         yield MeshScalar(name, read_only(values), of)
-    known = [name for name, _ in described]
     for table in VALUES.values():
         if "scalar" in tables.get(table, ()):
-            _raise_any(
-                f"{table}: scalar {shown(scalar)} is not in the {SCALARS} table; remove its values"
-                for (scalar,) in connection.execute(f"SELECT DISTINCT scalar FROM {table}")
-                if scalar not in known
-            )
+            for (scalar,) in connection.execute(f"SELECT DISTINCT scalar FROM {table}"):
+                if scalar not in dict(described):
+                    raise InputError(
+                        f"{table}: scalar {shown(scalar)} is not in the mesh_scalars table; remove its values"
+                    )
 
-
-# Inserting the rows of a scene.
 
 CHUNK: Final = 1 << 16
 """Rows that are converted at once. To convert all rows would take ten times the memory of the arrays."""
 
 
 def insert_rows(connection: sqlite3.Connection, scene: Scene) -> None:
-    """Insert the rows of a scene into tables that are empty; rows are counted from 1."""
+    """Insert the rows of a scene into new tables; rows are counted from 1."""
+
+    def insert(table: str, marks: str, rows: Iterable[tuple[Any, ...]]) -> None:
+        connection.executemany(f"INSERT INTO {quoted(table)} VALUES ({marks})", rows)
+
     mesh = scene.mesh
     for table in ROW_TABLES.values():
-        value: Any = scene if table.name == SCENE else vars(scene)[table.name]
+        value: Any = scene if table.name == "scene" else vars(scene)[table.name]
         rows = value if not table.is_single else [] if value is None else [value]
         values = ((number, *row_values(table.columns, row)) for number, row in enumerate(rows, 1))
-        _insert(connection, table.name, (NUMBER, *(column.name for column in table.columns)), values)
-    _insert(connection, NODES, ("node", *AXES), _numbered(*mesh.coordinates.T))
-    connection.executemany(
-        # A triangle repeats its third node.
-        f"INSERT INTO {POLYGONS} (polygon, part, {', '.join(CORNERS)})"
-        " VALUES (?1, ?2, ?3 + 1, ?4 + 1, ?5 + 1, nullif(?6, ?5) + 1)",
-        _numbered(np.array(mesh.part_names, object)[mesh.part_numbers], *mesh.node_numbers.T),
-    )
-    _insert(connection, MESH, (NUMBER, "crease_angle"), [(1, mesh.crease_angle)])
+        insert(table.name, "?" + ", ?" * len(table.columns), values)
+    insert(NODES, "?, ?, ?, ?", _numbered(*mesh.coordinates.T))
+    part_names = np.array(mesh.part_names, object)[mesh.part_numbers]
+    # A triangle repeats its third node.
+    marks = "?1, ?2, ?3 + 1, ?4 + 1, ?5 + 1, nullif(?6, ?5) + 1"
+    insert(POLYGONS, marks, _numbered(part_names, *mesh.node_numbers.T))
+    insert("mesh", "1, ?", [(mesh.crease_angle,)])
     for number, scalar in enumerate(mesh.scalars, 1):
-        _insert(connection, SCALARS, (NUMBER, "name", "of"), [(number, scalar.name, scalar.of)])
+        insert("mesh_scalars", "?, ?, ?", [(number, scalar.name, scalar.of)])
         # NaN becomes NULL.
-        values = ((row, scalar.name, value) for row, value in _numbered(scalar.values))
-        _insert(connection, VALUES[scalar.of], (scalar.of, "scalar", "value"), values)
-
-
-def _insert(
-    connection: sqlite3.Connection, table: str, columns: tuple[str, ...], rows: Iterable[tuple[Any, ...]]
-) -> None:
-    marks = ", ".join("?" * len(columns))
-    connection.executemany(
-        f"INSERT INTO {quoted(table)} ({', '.join(map(quoted, columns))}) VALUES ({marks})", rows
-    )
+        values = ((scalar.name, row, value) for row, value in _numbered(scalar.values))
+        insert(VALUES[scalar.of], "?, ?, ?", values)
 
 
 def _numbered(*columns: AnyArray) -> Iterator[tuple[Any, ...]]:

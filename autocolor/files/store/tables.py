@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import nearest, printable, shown
@@ -16,40 +16,22 @@ from autocolor.files.formats import recognized
 from autocolor.files.meshes.repair import different
 from autocolor.files.opening import FILES, STORE, PathLike, read_scene_with_report
 from autocolor.files.store.connections import (
-    DISK_ERRORS,
     SQL_ERRORS,
-    authorizer,
-    closed_on_error,
-    copied,
+    in_memory,
     limited,
-    loaded,
     primary_code,
     replacing,
-    sentence_of,
+    store_content,
 )
 from autocolor.files.store.schema import quoted
-from autocolor.files.store.store_file import report_in, store_of
+from autocolor.files.store.store_file import report_in, store_bytes
 from autocolor.scene.scene import Scene
 
 SECONDS: Final = 30.0
 """Limit: how long a statement may take, unless the user allows more."""
 
-LONGEST_COMPUTED: Final = 1 << 17
-"""Limit: in bytes, of a value that a statement reads or computes. SQLite cannot interrupt a function:
-searching a text of this length for one of half its length takes 0.2 s; at LONGEST_TEXT it would take 9 s."""
-
-ROWS_AT_ONCE: Final = 50
-"""Rows that are fetched at once. The rows of tables have at most LONGEST_COMPUTED bytes each."""
-
 Parameters = Sequence[object] | Mapping[str, object]
 Value = None | int | float | str | bytes
-
-
-class Answer(NamedTuple):
-    """The different names of the columns of an answer, and its rows, which are fetched in chunks."""
-
-    columns: tuple[str, ...]
-    rows: Iterator[tuple[Value, ...]]
 
 
 class ChangeError(UsageError):
@@ -69,7 +51,7 @@ def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0, limit: flo
     path = Path(path)
     with allowing(limit):
         if is_store(path) and (up, scale) == ("z", 1):
-            return Tables(loaded(path), path.name, path)
+            return Tables(store_content(path), path.name, path)
         return tables_of(read_scene_with_report(path, up=up, scale=scale).scene)
 
 
@@ -80,7 +62,7 @@ def is_store(path: Path) -> bool:
 
 def tables_of(scene: Scene) -> Tables:
     """The tables of a scene, in memory."""
-    return Tables(store_of(scene), scene.name)
+    return Tables(store_bytes(scene), scene.name)
 
 
 class Tables:
@@ -92,8 +74,8 @@ class Tables:
     `scene()`. A statement that takes longer than `seconds` is ended.
     """
 
-    def __init__(self, connection: sqlite3.Connection, name: str, store: Path | None = None) -> None:
-        self._connection = connection
+    def __init__(self, content: bytes, name: str, store: Path | None = None) -> None:
+        self._connection = in_memory(content)
         self._name = name
         self._store = store
         self.seconds = SECONDS
@@ -108,7 +90,7 @@ class Tables:
     def columns(self, table: str) -> list[str]:
         """The names of the columns of a table. Raises UsageError for an unknown table."""
         require_name(table, self.names, "table")
-        return list(self.answer(f"SELECT * FROM {quoted(table)}").columns)
+        return list(self.answer(f"SELECT * FROM {quoted(table)}")[0])
 
     def select(self, statement: str, parameters: Parameters = ()) -> list[dict[str, Value]]:
         """The rows that a SELECT gives, as dictionaries by the names of columns.
@@ -119,8 +101,12 @@ class Tables:
         columns, rows = self.answer(statement, parameters)
         return [dict(zip(columns, row, strict=True)) for row in rows]
 
-    def answer(self, statement: str, parameters: Parameters = ()) -> Answer:
-        """Like `select`, but rows are fetched in chunks, so that an answer may be larger than memory.
+    def answer(
+        self, statement: str, parameters: Parameters = ()
+    ) -> tuple[tuple[str, ...], Iterator[tuple[Value, ...]]]:
+        """The different names of the columns that a SELECT gives, and its rows.
+
+        They are fetched in chunks, so that an answer may be larger than memory.
 
         Raises UsageError, also while rows are fetched; ChangeError for a statement that would change rows.
         """
@@ -132,12 +118,12 @@ class Tables:
             while True:
                 # The time between two fetches is not the statement's.
                 with _statement(connection, self.seconds):
-                    fetched = cursor.fetchmany(ROWS_AT_ONCE)
+                    fetched = cursor.fetchmany(50)
                 if not fetched:
                     return
                 yield from fetched
 
-        return Answer(different([column[0] for column in cursor.description or ()]), rows())
+        return different([column[0] for column in cursor.description or ()]), rows()
 
     def update(self, table: str, key: str | int, /, **values: object) -> None:
         """Change columns of the row with this key, which is a name or a number.
@@ -145,8 +131,6 @@ class Tables:
         Raises UsageError for an unknown table, key or column, InputError if the scene would be wrong.
         """
         columns = self.columns(table)
-        if not values:
-            raise UsageError("an update must change a column, not none; give one as in intensity=2.0")
         by = "name" if isinstance(key, str) and "name" in columns else columns[0]
         sets = ", ".join(f"{quoted(name)} = ?" for name in values)
         statement = f"UPDATE {quoted(table)} SET {sets} WHERE {quoted(by)} = ?"
@@ -163,43 +147,41 @@ class Tables:
         the store has triggers, or cannot be written, OutputError if it is write-protected. After any error,
         nothing is changed.
         """
-        with allowing(self._limit), self._copy() as (copy, save):
-            for (trigger,) in copy.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'"):
-                raise WriteError(
-                    f"{self._name}: a store that is changed must have no triggers, and this one has trigger"
-                    f" {shown(trigger)}; drop it, or write the scene to another file"
-                )
-            for begin in ("PRAGMA foreign_keys = ON", "BEGIN", "PRAGMA defer_foreign_keys = ON"):
-                copy.execute(begin)
-            with _statement(copy, self.seconds, may_change=True):
-                # The last row is changed only after all rows of a RETURNING clause are fetched.
-                for _ in copy.execute(statement, parameters):
-                    pass
-            # The row count of Python 3.11's cursor is missing after WITH.
-            (count,) = copy.execute("SELECT changes()").fetchone()
-            report_in(copy, self._name)
+        saving: AbstractContextManager[tuple[bytes, Callable[[bytes], None]]] = (
+            nullcontext((self._connection.serialize(), lambda _: None))
+            if self._store is None
+            else replacing(self._store, lambda: None)
+        )
+        with allowing(self._limit), saving as (content, save):
+            copy = in_memory(content)
             try:
-                copy.execute("COMMIT")
-            except sqlite3.IntegrityError as error:
-                raise WriteError(
-                    f"{self._name}: tables of other programs must not refer to rows that a change removes or"
-                    f" renames ({error}); change their rows first"
-                ) from None
-            if count:
-                save(copy.serialize())
-        self._connection.close()
-        self._connection = copy
+                for (trigger,) in copy.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'"):
+                    raise WriteError(
+                        f"{self._name}: a store that is changed must have no triggers, and this one has"
+                        f" trigger {shown(trigger)}; drop it, or write the scene to another file"
+                    )
+                for begin in ("PRAGMA foreign_keys = ON", "BEGIN", "PRAGMA defer_foreign_keys = ON"):
+                    copy.execute(begin)
+                with _statement(copy, self.seconds, may_change=True):
+                    # The last row is changed only after all rows of a RETURNING clause are fetched.
+                    for _ in copy.execute(statement, parameters):
+                        pass
+                # The row count of Python 3.11's cursor is missing after WITH.
+                (count,) = copy.execute("SELECT changes()").fetchone()
+                report_in(copy, self._name)
+                try:
+                    copy.execute("COMMIT")
+                except sqlite3.IntegrityError as error:
+                    raise WriteError(
+                        f"{self._name}: tables of other programs must not refer to rows that a change removes"
+                        f" or renames ({error}); change their rows first"
+                    ) from None
+                if count:
+                    save(copy.serialize())
+                self._connection, copy = copy, self._connection
+            finally:
+                copy.close()
         return int(count)
-
-    @contextmanager
-    def _copy(self) -> Iterator[tuple[sqlite3.Connection, Callable[[bytes], None]]]:
-        """A copy of the tables, and a function that saves its bytes to the store's file, if there is one."""
-        if self._store is not None:
-            with replacing(self._store, lambda: None) as pair:
-                yield pair
-        else:
-            with closed_on_error(copied(self._connection)) as copy:
-                yield copy, lambda _: None
 
     def scene(self) -> Scene:
         """The scene of the tables as they are now. Raises InputError."""
@@ -219,39 +201,27 @@ class Tables:
 
 @contextmanager
 def _statement(connection: sqlite3.Connection, seconds: float, may_change: bool = False) -> Iterator[None]:
-    """Limits of permissions, time and the size of values for a statement, and its errors as UsageError.
+    """Limits of permissions and time for a statement, and its errors as UsageError.
 
-    Raises ChangeError if it would change tables and may not; WriteError if the disk, which holds large sorted
-    answers, is full or fails.
+    Raises ChangeError if it would change tables and may not.
     """
-    changed: set[str] = set()
     late = UsageError(
         f"a statement must end within {seconds:g} seconds, not run on; narrow it with WHERE or LIMIT, or"
         " allow more with --seconds"
     )
-    longest = connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_COMPUTED)
     try:
-        with limited(connection, authorizer(may_change, changed), seconds, late):
+        with limited(connection, seconds, late, may_change) as changed:
             yield
     except SQL_ERRORS as error:
-        text, code = printable(str(error)), primary_code(error)
-        if code in DISK_ERRORS:
-            raise WriteError(sentence_of(error)) from None
-        if code != sqlite3.SQLITE_AUTH:
-            raise UsageError(
-                f"a statement must be one that SQLite can run, and this one is not ({text}); correct it"
-            ) from None
-        if changed and not may_change:
+        if primary_code(error) == sqlite3.SQLITE_AUTH and changed and not may_change:
             raise ChangeError(
                 f"a statement must only read the tables, and this one changes {', '.join(sorted(changed))};"
                 " allow changes with --write (tables.change in Python), or write a SELECT"
             ) from None
         raise UsageError(
-            "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another"
-            f" ({text}); change the tables themselves with a tool of SQLite"
+            "a statement must be one SELECT or, with --write, one INSERT, UPDATE or DELETE that SQLite can"
+            f" run, and this one is not ({printable(str(error))}); correct it"
         ) from None
-    finally:
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
 
 
 def require_name(name: str, names: Sequence[str], noun: str) -> None:

@@ -371,7 +371,7 @@ class PictureEdits:
         present = in_digits(self.session.scene.surface(name).paint.color)
         names = dict.fromkeys(OBJECT_COLORS, "")
         if (paints := self.session.paints) is not None:
-            names = {in_digits(paints.color(number)): each for number, each in enumerate(paints.names)}
+            names = dict(zip(map(in_digits, paints.colors), paints.names, strict=True))
         color = color_after(present, self._own_colors.setdefault(name, present), step, tuple(names))
         message = f"object color {', '.join(part for part in (names.get(color), color) if part)}"
         self.session.paint(lambda _: message, object_color=color)

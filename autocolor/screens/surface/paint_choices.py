@@ -53,7 +53,7 @@ def pages_of_paints(paints: Palette | None, file: str) -> list[ColorPage]:
         assert paints is not None
         end = min(first + size, count)
         title = f"paints {first + 1:,} to {end:,} of {file}" if count > size else f"the paints of {file}"
-        colors, names = paints.colors[first:end], paints.names[first:end]
+        colors, names = np.array(paints.colors[first:end], np.uint8), paints.names[first:end]
         pages.append(ColorPage(title, colors, names, count <= FEW_PAINTS))
     hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
     return [*pages, ColorPage("the swatches", hues_down)]

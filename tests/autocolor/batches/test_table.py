@@ -5,7 +5,6 @@ import io
 import json
 import pickle
 import time
-from collections.abc import Callable
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -18,7 +17,6 @@ from hypothesis import strategies as st
 from autocolor import InputError, UsageError, Variant, grid, read_variants, write_palette
 from autocolor.batches.table import (
     LARGEST_TABLE,
-    MOST_KEYS,
     MOST_VARIANTS,
     Result,
     products,
@@ -28,6 +26,7 @@ from autocolor.batches.table import (
     varied,
 )
 from autocolor.files.paths import file_stem
+from tests.tables import call, refused
 
 VALUES = st.one_of(
     st.integers(-9, 9),
@@ -72,7 +71,10 @@ def test_a_variant_is_read_only_and_survives_pickling() -> None:
     variant = Variant("a", {"ambient": 1}, 2)
     assert pickle.loads(pickle.dumps(variant)) == variant == Variant("a", {"ambient": 1}, 2.0)
     assert isinstance(variant.settings, MappingProxyType)
-    assert variant != Variant("a", {"ambient": 2}, 2)
+    # The text of an array would leave out digits.
+    array = np.array([1.123456789012, 2.0])
+    plain = Variant("a", {"view.eye": array, "ambient": np.float32(0.5)}, np.int64(2))  # type: ignore[arg-type]
+    assert plain == Variant("a", {"view.eye": [1.123456789012, 2.0], "ambient": 0.5}, 2.0)
 
 
 @given(
@@ -106,7 +108,6 @@ def test_tables_are_multiplied_with_their_names_and_times() -> None:
         ("a=3:-1:3", [3.0, 1.0, -1.0]),
         ("a=0:0.3:4", [0.0, 0.1, 0.2, 0.3]),
         ("a=none", ["none"]),
-        pytest.param("a=" + "x" * (1 << 20), ["x" * (1 << 20)], id="the longest list"),
         ("a=b=c,d", ["b=c", "d"]),
     ],
 )
@@ -116,28 +117,14 @@ def test_a_list_of_values_is_split_at_commas_outside_of_brackets_and_quotes(
     assert settings_of(varied(text)) == [{"a": value} for value in values]
 
 
-def test_a_palette_gives_its_colors_and_their_names(tmp_path: Path) -> None:
-    path = tmp_path / "paints.gpl"
-    write_palette(path, ["#102030", "#ff0000", "#00ff00"], names=["Deep/Sea", "Red", ""])
-    variants = varied(f"surfaces.body.object_color=@{path}")
-    colors = ["#102030", "#ff0000", "#00ff00"]
-    assert settings_of(variants) == [{"surfaces.body.object_color": color} for color in colors]
-    assert [variant.name for variant in variants] == ["Deep/Sea", "Red", "00ff00"]
-
-
-def test_palettes_stand_in_a_list_beside_other_values_and_a_quoted_value_is_none(tmp_path: Path) -> None:
+def test_a_palette_gives_its_colors_and_their_names_beside_other_values(tmp_path: Path) -> None:
     path = tmp_path / "paints, old.gpl"
-    write_palette(path, ["#102030", "#ff0000"], names=["sea", "Red"])
+    write_palette(path, ["#102030", "#ff0000", "#00ff00"], names=["Deep/Sea", "Red", ""])
     variants = varied(f"a=red,@'{path}',\"@x\",@'{path}'")
-    values = ["red", "#102030", "#ff0000", '"@x"', "#102030", "#ff0000"]
-    assert settings_of(variants) == [{"a": value} for value in values]
-    assert [variant.name for variant in variants] == ["red-3", "sea", "Red", "@x", "sea-2", "Red-2"]
-
-
-def test_arrays_are_plain_values_with_all_digits() -> None:
-    array = np.array([1.123456789012, 2.0, 3.0])
-    variant = Variant("a", {"view.eye": array, "ambient": np.float32(0.5)}, np.int64(2))  # type: ignore[arg-type]
-    assert variant == Variant("a", {"view.eye": [1.123456789012, 2.0, 3.0], "ambient": 0.5}, 2.0)
+    colors = ["#102030", "#ff0000", "#00ff00"]
+    assert settings_of(variants) == [{"a": value} for value in ("red", *colors, '"@x"', *colors)]
+    names = ["red-3", "Deep/Sea", "Red", "00ff00", "@x", "Deep/Sea-2", "Red-2", "00ff00-2"]
+    assert [variant.name for variant in variants] == names
 
 
 def written(folder: Path, name: str, data: str | bytes) -> Path:
@@ -150,23 +137,11 @@ def test_a_csv_table_has_texts_and_an_empty_cell_sets_nothing(tmp_path: Path) ->
     path = written(
         tmp_path,
         "looks.csv",
-        '\ufeffname,time,view.eye,"ambient"\r\nfirst,0,"[1, 2, 3]",none\r\n\r\n,2.5,,0.1\r\n',
+        "\ufeffname;time;view.eye;ambient;on;;\r\na;0;[1, 2.5];0,5;TRUE;;\r\n;;;;;;\r\n;2,5;;none;\r\n",
     )
     assert read_variants(path) == (
-        Variant("first", {"view.eye": "[1, 2, 3]", "ambient": "none"}, 0.0),
-        Variant("0.1", {"ambient": "0.1"}, 2.5),
-    )
-
-
-def test_a_table_of_excel_is_read_with_its_decimal_commas(tmp_path: Path) -> None:
-    path = written(
-        tmp_path,
-        "looks.csv",
-        "name;view.eye;ambient;two_sided;;\r\na;[1, 2.5];0,5;TRUE;;\r\n;;;;;\r\nb;;,5;\r\n",
-    )
-    assert read_variants(path) == (
-        Variant("a", {"view.eye": "[1, 2.5]", "ambient": "0.5", "two_sided": "TRUE"}),
-        Variant("b", {"ambient": ".5"}),
+        Variant("a", {"view.eye": "[1, 2.5]", "ambient": "0.5", "on": "TRUE"}, 0),
+        Variant("none", {"ambient": "none"}, 2.5),
     )
 
 
@@ -191,82 +166,91 @@ def test_a_json_table_has_plain_values(tmp_path: Path) -> None:
     )
 
 
+TIME = "the time of a variant must be a number from -1e+09 to 1e+09, not"
+JSON = "t.json: a table must be valid JSON"
+
 REFUSED_FILES = [
-    ("t.csv", "", "t.csv: a table of variants must start with a row of column names, not be empty"),
-    ("t.csv", "a,b\n", "t.csv: a table must have at least one variant"),
-    ("t.csv", "a,b\n1,2\n\n3,4,5\n", "t.csv, row 4: a row must have at most 2 cells, separated by commas"),
+    ("t.csv", "a,b\n", "t.csv: a table must have at least one variant, not none; add a row"),
     ("t.csv", "name,a\nx,1\nX,2\n", "t.csv, row 3: a name must be unique, not 'X' as in row 2; rename"),
-    ("t.csv", "time,a\nsoon,1\n", "t.csv, row 2: the time of a variant must be a number of at most 1e+09"),
-    ("t.csv", "time,a\n1e999,1\n", "t.csv, row 2: the time of a variant must be a number"),
-    ("t.csv", b"a\n\xff\n", "t.csv, line 2: a table of variants must be text in UTF-8"),
+    ("t.csv", "time,a\n\nsoon,1\n", f"t.csv, row 3: {TIME} 'soon'; correct it"),
+    ("t.csv", "time,a\n1e999,1\n", f"t.csv, row 2: {TIME} inf"),
     ("t.csv", b"\xff\xfea\0", "t.csv: a table of variants must be text in UTF-8, not UTF-16"),
-    ("t.csv", ",".join(f"k{n}" for n in range(MOST_KEYS + 3)) + "\n", "t.csv, row 1: a table must have at"),
-    ("t.csv", "a\n" + "1\n" * (MOST_VARIANTS + 1), "t.csv: a table must have at most 100,000 variants"),
+    (
+        "t.csv",
+        "a\n" + "1\n" * (MOST_VARIANTS + 1),
+        "t.csv, row 100002: a table must have at most 100,000 var",
+    ),
     ("t.json", "{}", "t.json: a table in JSON must be a list of objects, not {}"),
     ("t.json", "[1]", "t.json, row 1: a variant must be a table of values by key, not 1"),
     ("t.json", '[{"name": 3}]', "t.json, row 1: a variant must have a name of at least one character, not 3"),
-    ("t.json", '[{"time": true}]', "t.json, row 1: the time of a variant must be a number"),
-    ("t.json", f'[{{"time": {"9" * 400}}}]', "t.json, row 1: the time of a variant must be a number"),
-    ("t.json", "[{", "t.json: a table must be valid JSON"),
-    ("t.json", "[NaN]", "t.json: a table must be valid JSON (the number NaN"),
-    ("t.json", "[" * 5000, "t.json: a table must be valid JSON (values in more than"),
-    ("t.json", b'["\xff"]', "t.json: a table must be valid JSON"),
+    ("t.json", '[{"time": true}]', f"t.json, row 1: {TIME} true"),
+    ("t.json", f'[{{"time": {"9" * 400}}}]', f"t.json, row 1: {TIME} 999"),
+    ("t.json", "[NaN]", f"{JSON} (the number NaN"),
+    ("t.json", b'["\xff"]', JSON),
+    (
+        "t.txt",
+        "a\n1\n",
+        "a table of variants must be a file that ends in .csv or .json, not t.txt; rename it",
+    ),
+    ("t.csv", bytes(LARGEST_TABLE + 1), "t.csv: a file must have at most 16,777,216 bytes"),
 ]
 
 
-@pytest.mark.parametrize(("name", "data", "sentence"), REFUSED_FILES)
+@pytest.mark.parametrize(("name", "data", "sentence"), REFUSED_FILES, ids=lambda value: value[:40])
 def test_a_bad_table_is_refused_with_its_place(
     tmp_path: Path, name: str, data: str | bytes, sentence: str
 ) -> None:
-    with pytest.raises(InputError) as refused:
+    with pytest.raises((InputError, UsageError)) as caught:
         read_variants(written(tmp_path, name, data))
-    assert str(refused.value).startswith(sentence)
-    assert "\n" not in str(refused.value)
+    assert str(caught.value).startswith(sentence)
+    assert isinstance(caught.value, UsageError) == (name == "t.txt")
 
 
-def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"ends in \.csv or \.json, not t\.txt; rename it"):
-        read_variants(written(tmp_path, "t.txt", "a\n1\n"))
-    path = written(tmp_path, "t.csv", "")
-    with open(path, "wb") as file:
-        file.truncate(LARGEST_TABLE + 1)
-    with pytest.raises(InputError, match="must have at most 16,777,216 bytes"):
-        read_variants(path)
+LIST = "variants must be a list of tables or of Variants, not"
+WRITTEN = "write them as in [{'ambient': 0.1}, {'ambient': 0.2}]"
+GRID = "a grid must have 1 to 100,000 variants, not"
+VARY = "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not"
+ENDS = "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"
+FORM = "; write it as in surfaces.body.object_color=red,navy"
+WRONG: Any = {"a": 1}
 
-
-@pytest.mark.parametrize(
-    ("make", "sentence"),
+test_wrong_variants_are_refused = refused(
+    call,
     [
-        (lambda: variants_of("ab"), "variants must be a list of tables or of Variants, not 'ab'"),  # type: ignore[arg-type]
-        (lambda: variants_of({"a": 1}), "variants must be a list"),  # type: ignore[dict-item]
-        (lambda: variants_of([3]), "row 1: a variant must be a table of values by key, not 3"),  # type: ignore[list-item]
-        (lambda: variants_of([{}, {1: 2}]), "row 2: the settings of a variant must be values by key"),  # type: ignore[dict-item]
-        (lambda: Variant("", {}), "a variant must have a name of at least one character, not ''"),
-        (lambda: Variant("a", {str(n): 1 for n in range(MOST_KEYS + 1)}), "a variant must have at most 256"),
-        (lambda: variants_of({} for _ in iter(int, 1)), "a table must have at most 100,000 variants"),
-        (lambda: grid({"a": []}), "a grid must have 1 to 100,000 variants, not 0; give a value for each key"),
+        (lambda: variants_of(WRONG), f"{LIST} {{'a': 1}}; {WRITTEN}"),
         (
-            lambda: grid({key: range(100) for key in "abc"}),
-            "a grid must have 1 to 100,000 variants, not 1,000",
+            lambda: variants_of([{}, {1: 2}]),  # type: ignore[dict-item]
+            "row 2: the settings of a variant must be values by key, not {1: 2}; write them as in"
+            " {'ambient': 0.2}",
         ),
+        (
+            lambda: variants_of({} for _ in iter(int, 1)),
+            "row 100001: a table must have at most 100,000 variants, not more; split it",
+        ),
+        (lambda: grid({"a": []}), f"{GRID} 0; give a value for each key"),
+        (lambda: grid({key: range(100) for key in "abc"}), f"{GRID} 1,000,000; give fewer values"),
         (lambda: grid({"a": "red"}), "a: an axis must be a list of values, not 'red'; write it as a list"),
-        (lambda: grid(["a"]), "a grid must be lists of values by key, not ['a']"),  # type: ignore[arg-type]
-        (lambda: products([]), "a grid must have 1 to 100,000 variants, not 0; give a value for each key"),
-        (lambda: products([varied("a=1,2"), ()]), "a grid must have 1 to 100,000 variants, not 0"),
-        (lambda: products([varied("a=1,2"), varied("a=3")]), "a key must be in one table or list, not 'a'"),
-        (lambda: varied("a"), "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not 'a'; write it as in"),
-        (lambda: varied("=1"), "--vary must be KEY=A,B,C"),
-        (lambda: varied("a=" + "x" * ((1 << 20) + 1)), "--vary must be KEY=A,B,C"),
-        (lambda: varied("name=a,b"), "--vary must be KEY=A,B,C"),
-        (lambda: varied("a=1,,2"), "--vary a: there must be a value before and after each comma"),
-        (lambda: varied("a=0:1:1"), "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"),
-        (lambda: varied("a=0:1e999:3"), "--vary a: START and STOP must be finite"),
+        (
+            lambda: grid(["a"]),  # type: ignore[arg-type]
+            "a grid must be lists of values by key, not ['a']; write it as in {'ambient': [0.1, 0.2]}",
+        ),
+        (lambda: products([]), f"{GRID} 0; give a value for each key"),
+        (
+            lambda: products([varied("a=1,2"), varied("a=3")]),
+            "a key must be in one table or list, not 'a' in two; leave one out",
+        ),
+        *((lambda text=text: varied(text), f"{VARY} {text!r}{FORM}") for text in ("a", "=1", "name=a,b")),
+        (
+            lambda: varied("a=1,,2"),
+            "--vary a: there must be a value before and after each comma, not '1,,2'; leave a comma out, or"
+            " write none for a field without a value",
+        ),
+        *(
+            (lambda text=text: varied(f"a={text}"), f"{ENDS} {text!r}; correct it")
+            for text in ("0:1:1", "0:1e999:3", "0:-:3")
+        ),
     ],
 )
-def test_wrong_variants_are_refused(make: Callable[[], object], sentence: str) -> None:
-    with pytest.raises(UsageError) as refused:
-        make()
-    assert str(refused.value).startswith(sentence)
 
 
 @given(TABLES, st.lists(st.text(max_size=8), max_size=12))
@@ -285,4 +269,4 @@ def test_the_table_of_results_has_a_row_for_each_with_every_key(
     for row, result in zip(read, results, strict=True):
         for key in keys:
             value = result.settings.get(key, "")
-            assert row[key] == (json.dumps(value) if isinstance(value, list) else text_of(value))
+            assert row[key] == text_of(value)

@@ -2,78 +2,43 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
-import tempfile
 import zipfile
 from pathlib import Path
-from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from autocolor import InputError
+from autocolor.arrays import AnyArray
 from autocolor.budget import MEMORY, allowing
-from autocolor.files.array_file import (
-    ArrayFile,
-    ArrayFileKind,
-    Series,
-    array_file_bytes,
-    read_array_file,
-)
-from tests.tables import refused
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
+from tests.autocolor.files.refusals import refusal
+from tests.small import cube
 
-KIND = ArrayFileKind(
-    noun="test file",
-    advice="make it again",
-    formats=("test 2", "test 1"),
-    keys=frozenset(("name",)),
-    arrays={"numbers": ("<i4", 2)},
-    series={"rows": Series("row", ("<f8", 1), most=3)},
-)
-NUMBERS = {"numbers": np.arange(6).reshape(2, 3)}
+KIND = ArrayFileKind("test file", "make it again", "test 2", {"rows": ("<i4", (None,))})
+ROWS = {"rows": np.arange(3)}
 
 
-def content(arrays: int, /, **header: Any) -> bytes:
-    """The bytes of a file with some arrays of the series, whatever its header says of them."""
-    series = {f"row_{number}": np.full(number, number) for number in range(arrays)}
-    types = {**KIND.arrays, **dict.fromkeys(series, ("<f8", 1))}
-    plain = dataclasses.replace(KIND, arrays=types, series={})
-    return array_file_bytes(plain, {"name": "ö", **header}, {**NUMBERS, **series})
-
-
-def read(data: bytes) -> ArrayFile:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "file")
-        path.write_bytes(data)
-        return read_array_file(KIND, path)
-
-
-WHOLE = "file: a test file must be whole and as autocolor wrote it, and it is not"
-
-test_what_is_refused = refused(
-    read,
+@pytest.mark.parametrize(
+    ("header", "members", "reason"),
     [
-        (content, f"{WHOLE} ({reason}); make it again")
-        for content, reason in (
-            (content(0, format="test 3"), "its format must be 'test 2'"),
-            (content(0, more=1), "its header must have exactly the keys of its format"),
-            *(
-                (content(0, rows=rows), f"rows must be a list of at most 3 rows, not {rows!r}")
-                for rows in cast("tuple[object, ...]", (None, {}, "ab", 3, [0] * 4))
-            ),
-            *(
-                (content(count, rows=[0, 0]), "its members are 'header.npy', 'numbers.npy', 'row_0.npy'")
-                for count in (1, 3)
-            ),
-        )
+        ({"format": "test 3"}, ROWS, "its format must be 'test 2'"),
+        ({}, {"rows": np.eye(2)}, "rows must be <i4 of shape (None,), not <i4 of (2, 2)"),
     ],
 )
+def test_another_format_and_another_type_are_refused(
+    tmp_path: Path, header: dict[str, str], members: dict[str, AnyArray], reason: str
+) -> None:
+    path = tmp_path / "file"
+    path.write_bytes(array_file_bytes(KIND, cube(), header, members))
+    rule = "a test file must be whole and as autocolor wrote it"
+    assert refusal(read_array_file, KIND, path) == f"file: {rule}, and it is not ({reason}); make it again"
 
 
 def test_a_sparse_file_and_overlapping_members_are_refused_before_they_are_read(tmp_path: Path) -> None:
     path = tmp_path / "file"
-    path.write_bytes(content(0, rows=[]))
+    path.write_bytes(array_file_bytes(KIND, cube(), {}, ROWS))
     os.truncate(path, 3 << 30)
     with pytest.raises(InputError, match=r"file: to read 3,221,225,472 bytes must take at most 4,000.0 MB "):
         read_array_file(KIND, path)

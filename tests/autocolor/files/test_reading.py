@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import os
-import socket
 from pathlib import Path, PureWindowsPath
 from time import process_time
 
@@ -44,21 +43,18 @@ def test_what_is_no_regular_file_is_refused_without_waiting(
     Path("folder").mkdir()
     Path("zero").symlink_to("/dev/zero")
     os.mkfifo("pipe")
-    with socket.socket(socket.AF_UNIX) as opened:
-        opened.bind("socket")
-        for name, kind in (("folder", "folder"), ("pipe", "pipe"), ("socket", "socket"), ("zero", "device")):
-            sentence = f"{name}: it must be a regular file, not a {kind}; name a file"
-            assert refusal(read_bytes, Path(name), 100) == sentence
+    for name in ("folder", "pipe", "zero"):
+        kind = "a folder" if name == "folder" else "a pipe or a device"
+        sentence = f"{name}: it must be a regular file, not {kind}; name a file"
+        assert refusal(read_bytes, Path(name), 100) == sentence
 
 
 def test_a_name_of_no_file_is_refused(tmp_path: Path) -> None:
-    loop, none = tmp_path / "loop", tmp_path / "none.obj"
-    loop.symlink_to(loop)
+    none = tmp_path / "none.obj"
     advice = "; check the name and its permissions"
     for path, sentence in (
         (Path("a\0b.obj"), "a file name must be valid on this system, not 'a\\x00b.obj'; correct it"),
         (Path("a" * 300), f"{'a' * 300}: it cannot be read (file name too long){advice}"),
-        (loop, f"{loop}: it cannot be read (too many levels of symbolic links){advice}"),
         (none, f"{none}: there is no such file or folder; check the name"),
     ):
         assert refusal(read_bytes, path, 100) == sentence
@@ -85,65 +81,35 @@ def test_json_may_be_nested_a_hundred_deep_and_have_as_many_values_as_allowed() 
         assert process_time() - begun < 3
 
 
-FILE = "must be the name of a file, not"
-IN_FOLDER = "must be the name of a file in the scene's folder, not"
+WRONG = ("/a.obj", "b/../../a", "C:a.obj", "up/b.obj", "a\\b.obj", "https://a.b/c.obj")
 
 
-@pytest.mark.parametrize(
-    ("name", "sentence"),
-    [
-        ("", f"{FILE} ''; correct it"),
-        ("a\0b", f"{FILE} 'a\\x00b'; correct it"),
-        ("https://a.b/c.obj", f"{FILE} the address 'https://a.b/c.obj'; fetch it and name the file"),
-        ("a\\b.obj", "must have / between folders, not \\ as in 'a\\\\b.obj'; correct it"),
-        ("/a.obj", f"{IN_FOLDER} '/a.obj'; copy the file there"),
-        ("b/../../a", f"{IN_FOLDER} 'b/../../a'; copy the file there"),
-        ("C:a.obj", f"{IN_FOLDER} 'C:a.obj'; copy the file there"),
-        (
-            "up/b.obj",
-            "must be a file in the scene's folder, not a link to one outside like 'up/b.obj'; copy the file"
-            " there",
-        ),
-    ],
-)
-def test_names_of_other_places_are_refused_unless_files_outside_are_allowed(
-    tmp_path: Path, name: str, sentence: str
-) -> None:
+def test_names_of_other_places_are_refused_unless_files_outside_are_allowed(tmp_path: Path) -> None:
     folder = tmp_path / "scene"
     folder.mkdir()
     (folder / "up").symlink_to(tmp_path)
     for right in ("a.obj", "parts/a.obj", "./a.obj", "a b.obj", "é.obj", "..a.obj"):
         assert path_within([], folder, right) == folder / right
     problems: list[str] = []
-    assert path_within(problems, folder, name) is None
-    assert problems == [sentence]
-    within = path_within([], folder, name, outside=True)
-    assert within == (None if sentence.startswith(FILE) else folder / name)
-
-
-@pytest.mark.parametrize(
-    ("name", "stem"),
-    [
-        ("scenes/coupe", "coupe"),
-        ("C:\\car", "C__car"),
-        ("line\nbreak\x00\x1f", "line_break__"),
-        ('*?"<>|: ~', "_______ ~"),
-        (" купе é ", "купе é"),
-        ("a" * 101, "a" * 100),
-        # A space at the cut goes, too.
-        ("a" * 99 + " b", "a" * 99),
-        *((name, "scene") for name in ("", ".", "..", "/", "a/..", " ", ". .")),
-    ],
-)
-def test_a_name_becomes_the_beginning_of_a_file_name(name: str, stem: str) -> None:
-    assert file_stem(name) == stem
+    for name in (*WRONG, "", "a\0b"):
+        assert path_within(problems, folder, name) is None
+        assert path_within([], folder, name, outside=True) == (folder / name if name in WRONG else None)
+    rule = "must be the name of a file in the scene's folder, not"
+    assert problems == [
+        *(f"{rule} {name!r}; copy the file there" for name in WRONG),
+        "must be the name of a file, not ''; correct it",
+        "must be the name of a file, not 'a\\x00b'; correct it",
+    ]
 
 
 @given(st.text())
 @example("../../x")
 @example("a\\..\\b")
-@example(" " * 100 + "x")
 def test_any_name_becomes_a_file_in_the_folder_where_it_is_put(name: str) -> None:
+    names = {"C:\\car": "C__car", "line\nbreak\x00": "line_break_", " купе é ": "купе é", "a/..": "scene"}
+    # A space at the cut goes, too.
+    names["a" * 99 + " b"] = "a" * 99
+    assert {each: file_stem(each) for each in names} == names
     stem = file_stem(name)
     path = f"{stem}.png"
     assert Path(path).name == path
@@ -156,9 +122,7 @@ def test_any_name_becomes_a_file_in_the_folder_where_it_is_put(name: str) -> Non
         check_stem(stem)
 
 
-@pytest.mark.parametrize(
-    "name", ["", " ", ".hidden", "a/b", "/a", "a\\b", "C:a", "a\nb", "\u202ea", " a", "a ", "x" * 101]
-)
+@pytest.mark.parametrize("name", ["", ".hidden", "a/b", "\u202ea", "x" * 101])
 def test_a_name_that_cannot_be_the_stem_of_a_listed_file_is_refused(name: str) -> None:
     with pytest.raises(UsageError, match=r"^a file name must be 1 to 100 characters, .*; choose another$"):
         check_stem(name)

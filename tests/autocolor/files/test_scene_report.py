@@ -3,11 +3,11 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from autocolor import Mesh, Surface, View
+from autocolor import Mesh, View
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_report import scene_report
 from autocolor.scene.defaults import created_surface
-from tests.small import cube, wall_scene
+from tests.small import cube
 
 VIEW = View((0, -4, 0), target=(0, 0, 0))
 
@@ -23,24 +23,6 @@ def created(parts: int = 1, **fields: Any) -> tuple[str, ...]:
     return scene_report([MeshReport(mesh_of(parts))], **given).created
 
 
-def test_of_a_bare_mesh_everything_is_created_and_said() -> None:
-    report = scene_report([MeshReport(cube())])
-    assert report.created == (
-        "a view was created that frames the object",
-        "4 studio lights were created",
-        "surface 'surface' was created",
-    )
-    assert (report.is_view_created, report.are_lights_created) == (True, True)
-
-
-def test_nothing_is_said_of_what_was_given() -> None:
-    fields: dict[str, Any] = {"view": VIEW, "lights": (), "surfaces": [Surface("cube")]}
-    report = scene_report([MeshReport(cube())], mesh_files=({"file": "car.obj"},), **fields)
-    assert (report.created, report.mesh_files) == ((), ({"file": "car.obj"},))
-    assert (report.is_view_created, report.are_lights_created) == (False, False)
-    assert (report.scene.view, report.scene.lights) == (VIEW, ())
-
-
 def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
     names = ", ".join(f"'{part}'" for part in range(12))
     assert created(parts=12) == (f"12 surfaces were created: {names}",)
@@ -50,19 +32,6 @@ def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
     shared = {str(part): "0" for part in range(300)}
     assert created(parts=300, surface_of_part=shared) == ("surface '0' was created",)
     assert created(parts=300)[-1] == "46 parts share surface '254', because a scene has at most 255"
-
-
-def test_of_parts_and_materials_of_several_meshes_the_first_count() -> None:
-    red, blue = Surface("red"), Surface("red", two_sided=False)
-    reports = [
-        MeshReport(wall_scene().mesh, material_of_part={"wall": "red"}, materials=(red,)),
-        MeshReport(wall_scene().mesh, material_of_part={"wall": "glass"}, materials=(blue,)),
-        MeshReport(cube(), material_of_part={"cube": "red"}),
-    ]
-    report = scene_report(reports, view=VIEW, lights=())
-    assert [part.surface for part in report.scene.parts] == ["red", "red"]
-    assert report.scene.surfaces == (red,)
-    assert report.created == ("surface 'red' was created",)
 
 
 def test_materials_of_one_name_that_differ_are_kept_apart() -> None:

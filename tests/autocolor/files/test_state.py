@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import platformdirs
@@ -25,26 +22,16 @@ from autocolor.files.state import (
     state_folder,
 )
 
-ROOT = Path(__file__).parents[3]
 
-
-def test_the_last_entry_is_first_and_there_once(state: Path) -> None:
+def test_the_last_entries_are_first_and_there_once(state: Path) -> None:
     assert (recent_colors(), recent_files()) == ((), ())
     assert not state.exists()
-    for color in ((176, 16, 32), (255, 255, 255), (0, 0, 255), (176, 16, 32)):
-        note_color(color)
-    assert recent_colors() == ((176, 16, 32), (0, 0, 255), (255, 255, 255))
-    for name in ("/one", "/two", "/one"):
-        note_file(name)
-    assert recent_files() == (Path("/one"), Path("/two"))
-
-
-def test_lists_are_short() -> None:
-    for number in range(13):
+    for number in (*range(13), 12, 5):
         note_color((number, 0, 0))
         note_file(f"/{number}")
-    assert recent_colors() == tuple((number, 0, 0) for number in range(12, 12 - MOST_COLORS, -1))
-    assert recent_files() == tuple(Path(f"/{number}") for number in range(12, 12 - MOST_FILES, -1))
+    order = [5, *range(12, 5, -1), *range(4, -1, -1)]
+    assert recent_colors() == tuple((number, 0, 0) for number in order[:MOST_COLORS])
+    assert recent_files() == tuple(Path(f"/{number}") for number in order[:MOST_FILES])
 
 
 @pytest.mark.parametrize(
@@ -53,10 +40,7 @@ def test_lists_are_short() -> None:
         b"\xff\xfe",
         b'{"a": 1}',
         b"[" * 100_000,
-        b"[1e999, null, true, [], {}]",
-        b'["blue", "#12345", "#1234567", "#12345\xc3\xbc", "relative", "/a\\u0000b", ""]',
-        b"[" + b"9" * 5000 + b"]",
-        b"[" + b" " * (1 << 18) + b"]",
+        b'[1e999, [], "blue", "#12345", "#1234567", "#12345\xc3\xbc", "relative", "/a\\u0000b", ""]',
     ],
     ids=lambda data: repr(data[:9]),
 )
@@ -78,42 +62,20 @@ def test_a_list_that_cannot_be_written_is_no_error(state: Path) -> None:
     state.unlink()
     note_color((255, 0, 0))
     assert state.stat().st_mode & 0o777 == 0o700
-    (state / FILES).mkdir()
-    note_file("/scene")
-    assert (recent_colors(), recent_files()) == (((255, 0, 0),), ())
 
 
-def no_home(*_: object, **__: object) -> str:
-    raise RuntimeError
-
-
-@pytest.mark.parametrize("answer", [no_home, lambda *_, **__: "~/.local/state/autocolor"])
-def test_without_a_home_there_are_no_lists_and_the_variable_is_named(
-    monkeypatch: pytest.MonkeyPatch, answer: Callable[..., str]
-) -> None:
-    monkeypatch.setattr(platformdirs, "user_state_dir", answer)
+def test_without_a_home_there_are_no_lists_and_the_variable_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(platformdirs, "user_state_dir", lambda *_, **__: "~/.local/state/autocolor")
     note_color((255, 0, 0))
     assert recent_colors() == ()
-    with pytest.raises(OutputError) as refusal:
+    with pytest.raises(OutputError, match="a home folder, and there is none; set XDG_STATE_HOME"):
         state_folder()
-    assert str(refusal.value) == (
-        "the state folder must be in a home folder, and there is none; set XDG_STATE_HOME"
-    )
 
 
-def test_a_program_that_is_killed_has_no_lock(tmp_path: Path) -> None:
-    code = (
-        "import sys; from pathlib import Path; from autocolor.files.state import lock_file;"
-        "lock_file(Path(sys.argv[1])); print('locked', flush=True); sys.stdin.read()"
-    )
-    path, pipe = tmp_path / "lock", subprocess.PIPE
-    command = (sys.executable, "-c", code, path)
-    with subprocess.Popen(command, cwd=ROOT, stdin=pipe, stdout=pipe) as process:
-        assert process.stdout is not None
-        assert process.stdout.readline().strip() == b"locked"
-        assert lock_file(path) is None
-        process.kill()
-        process.wait()
+def test_a_lock_lasts_until_it_is_closed(tmp_path: Path) -> None:
+    path = tmp_path / "lock"
+    for _ in range(2):
         descriptor = lock_file(path)
         assert descriptor is not None
+        assert lock_file(path) is None
         os.close(descriptor)

@@ -14,12 +14,11 @@ from click.testing import CliRunner
 
 from autocolor import read_scene
 from autocolor.commands.autocolor import autocolor
-from autocolor.errors import AutocolorError, InputError, OutputError, WriteError
+from autocolor.errors import InputError, OutputError, WriteError
 from autocolor.files import writing
 from autocolor.files.opening import kind_of
 from autocolor.files.reading import read_bytes
 from autocolor.files.writing import (
-    hidden_path,
     read_table,
     read_together,
     refuse_output,
@@ -30,44 +29,14 @@ from autocolor.files.writing import (
 from tests.kills import KINDS, Killed, killed, mesh_sum, steps
 
 
-def test_files_are_written_whole_and_overwritten_only_if_asked(tmp_path: Path) -> None:
-    path = tmp_path / "a.npz"
-    write_atomically(path, b"old", overwrite=False)
-    with pytest.raises(OutputError) as caught:
-        write_atomically(path, b"new", overwrite=False)
-    assert str(caught.value) == (
-        f"an output must be a new file, not {path}, which exists; choose another name, or overwrite it"
-        " with --force (overwrite=True in Python)"
-    )
-    assert path.read_bytes() == b"old"
-    write_atomically(path, b"new", overwrite=True)
-    assert path.read_bytes() == b"new"
-    assert os.listdir(tmp_path) == ["a.npz"]
-
-
-@pytest.mark.parametrize("name", ["none/a.npz", "", "a\0b", "a" * 5000])
+@pytest.mark.parametrize("name", ["old.npz", "none/a.npz", "", "a\0b", "a" * 5000])
 def test_what_is_no_place_for_a_file_is_refused_at_once(tmp_path: Path, name: str) -> None:
+    (tmp_path / "old.npz").write_bytes(b"old")
     for write in (refuse_output, partial(write_atomically, data=b"")):
         with pytest.raises(OutputError):
-            write(tmp_path / name, overwrite=True)
-    assert os.listdir(tmp_path) == []
-
-
-@pytest.mark.parametrize(("number", "kind"), [(errno.ENOSPC, WriteError), (errno.EROFS, OutputError)])
-def test_after_a_failure_the_old_file_is_whole(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, kind: type[AutocolorError]
-) -> None:
-    path = tmp_path / "a.npz"
-    path.write_bytes(b"old")
-
-    def fail(*_: object) -> None:
-        raise OSError(number, os.strerror(number))
-
-    monkeypatch.setattr(os, "fsync", fail)
-    with pytest.raises(kind, match=os.strerror(number).lower()):
-        write_atomically(path, b"new", overwrite=True)
-    assert path.read_bytes() == b"old"
-    assert os.listdir(tmp_path) == ["a.npz"]
+            write(tmp_path / name, overwrite=False)
+    assert (tmp_path / "old.npz").read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["old.npz"]
 
 
 # Folders of tables.
@@ -78,8 +47,8 @@ NAMES = ("nodes.npy", "polygons.npy", "parts.npy", "scalars/1.npy")
 def tables_of(folder: Path, *, old: bool) -> None:
     """Save a set of tables: the old has a table that the new lacks, and the new has one in a folder."""
     names = [*NAMES[:2], NAMES[2] if old else NAMES[3]]
-    files = [(name, [b"old" if old else b"new", name.encode()]) for name in names]
-    files.append(("tables.json", [json.dumps(names).encode()]))
+    files = [(name, (b"old" if old else b"new") + name.encode()) for name in names]
+    files.append(("tables.json", json.dumps(names).encode()))
     write_together(folder, files, others=NAMES[2:], overwrite=True)
 
 
@@ -91,8 +60,7 @@ def content_of(folder: Path) -> dict[str, bytes]:
     """The content of the tables of a folder, as our readers find them."""
 
     def read() -> dict[str, bytes]:
-        if not table_exists(folder, "tables.json"):
-            return {}
+        assert table_exists(folder, "tables.json")
         names = json.loads(read_table(folder, "tables.json", bytes_of))
         return {name: read_table(folder, name, bytes_of) for name in names}
 
@@ -105,11 +73,7 @@ def bytes_of(path: Path) -> bytes:
 
 def test_tables_written_together_get_their_names_and_other_files_stay(tmp_path: Path) -> None:
     folder = tmp_path / "tables"
-    folder.mkdir()
-    # No file is written through a link with a hidden name.
-    hidden_path(folder / "nodes.npy").symlink_to(tmp_path / "elsewhere")
     tables_of(folder, old=True)
-    assert os.listdir(tmp_path) == ["tables"]
     (folder / "notes.txt").write_text("mine")
     (folder / "nodes.npy").chmod(0o600)
     tables_of(folder, old=False)
@@ -124,49 +88,42 @@ def test_tables_written_together_get_their_names_and_other_files_stay(tmp_path: 
 def test_tables_are_not_overwritten_unless_that_is_allowed(tmp_path: Path) -> None:
     (tmp_path / "polygons.csv").write_bytes(b"mine")
     with pytest.raises(OutputError, match="an output must be a new file"):
-        write_together(tmp_path, [("nodes.csv", [b""]), ("polygons.csv", [b""])], others=(), overwrite=False)
+        write_together(tmp_path, [("nodes.csv", b""), ("polygons.csv", b"")], others=(), overwrite=False)
     assert names_in(tmp_path) == ["polygons.csv"]
 
 
 def test_tables_that_cannot_be_written_leave_nothing(tmp_path: Path) -> None:
-    def pieces() -> Iterator[bytes]:
-        yield b"one"
+    def files() -> Iterator[tuple[str, bytes]]:
+        yield "scalars/1.npy", b"one"
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    for name in ("nodes.npy", "scalars/1.npy"):
-        files = [("parts.npy", [b""]), (name, pieces())]
-        with pytest.raises(WriteError, match="must be written whole"):
-            write_together(tmp_path / "new", files, others=(), overwrite=True)
-        assert list(tmp_path.iterdir()) == []
+    with pytest.raises(WriteError, match="must be written whole"):
+        write_together(tmp_path / "new", files(), others=(), overwrite=True)
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(OutputError, match=r"a mesh must have a folder to be in, .* cannot be made"):
+        write_together(tmp_path / "none" / "out", [], others=(), overwrite=True)
     (tmp_path / "file").touch()
-    for folder, sentence in (
-        (tmp_path / "none" / "out", r"a mesh must have a folder to be in, .* cannot be made \(no such file"),
-        (tmp_path / "file", r"an output must have a place, and at .*file it cannot be made \(not a dir"),
-    ):
-        with pytest.raises(OutputError, match=sentence):
-            write_together(folder, [], others=(), overwrite=True)
+    with pytest.raises(OutputError, match=r"an output must have a place, and at .*file it cannot be made"):
+        write_together(tmp_path / "file", [], others=(), overwrite=True)
 
 
-@pytest.mark.parametrize("has_old", [True, False])
 def test_tables_whose_save_is_killed_at_any_step_are_the_old_or_the_new(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, has_old: bool
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "fsync", lambda _: None)
     for old in (True, False):
         tables_of(tmp_path / str(old), old=old)
-    kinds = [content_of(tmp_path / "True") if has_old else {}, content_of(tmp_path / "False")]
+    kinds = [content_of(tmp_path / "True"), content_of(tmp_path / "False")]
     found = []
     for number in count():
         folder = tmp_path / f"killed {number}"
-        if has_old:
-            tables_of(folder, old=True)
+        tables_of(folder, old=True)
         with suppress(Killed), steps(number, killed) as done:
             tables_of(folder, old=False)
         found.append(kinds.index(content_of(folder)))
-        assert table_exists(folder, "nodes.npy") == bool(has_old or found[-1])
         # The next save names the tables that are left, and removes what is hidden.
         tables_of(folder, old=False)
-        assert names_in(folder) == names_in(tmp_path / "False")
+        assert sorted(os.listdir(folder)) == ["nodes.npy", "polygons.npy", "scalars", "tables.json"]
         assert content_of(folder) == kinds[1]
         if len(done) < number:
             break
@@ -174,26 +131,24 @@ def test_tables_whose_save_is_killed_at_any_step_are_the_old_or_the_new(
     assert 0 < sum(found) < len(found)
 
 
+@pytest.mark.parametrize("suffix", ["csv", "npy"])
 def test_tables_that_have_no_names_of_their_own_yet_are_found_in_every_way(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
 ) -> None:
-    for name, suffix in (("CSV tables", "csv"), ("npy tables", "npy")):
-        kind, folder = KINDS[name], tmp_path / suffix
-        folder.mkdir()
-        with monkeypatch.context() as patch:
-            # As if the program were killed before.
-            patch.setattr(writing, "_finish", lambda _: None)
-            kind.save(folder, 1)
-        assert [*(folder / "t").glob("[!.]*.*")] == []
-        expected = kind.read(folder)
-        nodes, polygons = (f"t/{key}.{suffix}" for key in ("nodes", "polygons"))
-        (folder / "scene.toml").write_text(f'mesh = [{{nodes = "{nodes}", polygons = "{polygons}"}}]')
-        for source in (folder / "scene.toml", folder / nodes):
-            assert mesh_sum(read_scene(source).mesh) == expected
-        assert kind_of(folder / "t") == "mesh"
-        for command in (["info"], ["validate"], ["convert", str(folder / "out.ply")]):
-            arguments = [command[0], str(folder / "t"), *command[1:]]
-            assert CliRunner().invoke(autocolor, arguments).exit_code == 0
+    kind = KINDS["CSV tables" if suffix == "csv" else "npy tables"]
+    with monkeypatch.context() as patch:
+        # As if the program were killed before.
+        patch.setattr(writing, "_finish", lambda _: None)
+        kind.save(tmp_path, 1)
+    assert [*(tmp_path / "t").glob("[!.]*.*")] == []
+    expected = kind.read(tmp_path)
+    nodes, polygons = (f"t/{key}.{suffix}" for key in ("nodes", "polygons"))
+    (tmp_path / "scene.toml").write_text(f'mesh = [{{nodes = "{nodes}", polygons = "{polygons}"}}]')
+    for source in (tmp_path / "scene.toml", tmp_path / nodes):
+        assert mesh_sum(read_scene(source).mesh) == expected
+    assert kind_of(tmp_path / "t") == "mesh"
+    for command in ("info", "validate"):
+        assert CliRunner().invoke(autocolor, [command, str(tmp_path / "t")]).exit_code == 0
 
 
 def test_tables_are_read_again_if_a_save_comes_while_they_are_opened(tmp_path: Path) -> None:
@@ -216,10 +171,10 @@ def test_tables_are_read_again_if_a_save_comes_while_they_are_opened(tmp_path: P
 
 
 def test_two_programs_do_not_save_tables_to_a_folder_at_once(tmp_path: Path) -> None:
-    def pieces() -> Iterator[bytes]:
+    def files() -> Iterator[tuple[str, bytes]]:
         with pytest.raises(WriteError, match=f"another one saves to {tmp_path}; try again"):
             tables_of(tmp_path, old=False)
-        yield b"one"
+        yield "nodes.npy", b"one"
 
-    write_together(tmp_path, [("nodes.npy", pieces()), ("tables.json", [b"[]"])], others=(), overwrite=True)
+    write_together(tmp_path, files(), others=(), overwrite=True)
     assert (tmp_path / "nodes.npy").read_bytes() == b"one"

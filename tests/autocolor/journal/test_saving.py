@@ -125,7 +125,7 @@ def test_a_scene_that_could_not_be_saved_under_a_name_keeps_its_own(
     before, steps = studio.scene, len(studio.history.to_undo)
     for name in ("red", before.name):
         with monkeypatch.context() as patch:
-            patch.setattr("autocolor.journal.saving.write_scene_with_tables", fail)
+            patch.setattr("autocolor.journal.saving.write_scene", fail)
             with pytest.raises(WriteError, match="full"):
                 studio.save_session(work, name)
         assert studio.scene is before
@@ -187,7 +187,7 @@ def test_a_picture_of_ours_needs_no_backup_even_if_its_scene_could_not_be_writte
         raise WriteError("no space")
 
     with monkeypatch.context() as patched:
-        patched.setattr("autocolor.journal.saving.write_scene_with_tables", full)
+        patched.setattr("autocolor.journal.saving.write_scene", full)
         studio.recolor("body", blend=0.25)
         with pytest.raises(WriteError, match="no space"):
             studio.save_session(work)

@@ -35,6 +35,14 @@ def test_a_rig_loses_links_to_absent_rows_and_says_so(tmp_path: Path) -> None:
     )
 
 
+def test_a_rig_that_does_not_fit_is_refused_by_the_name_of_its_file(tmp_path: Path) -> None:
+    lamp = '[[lights]]\nname = "lamp"\nposition = [0, 0, 1]\naim = [0, 0, 0]\n'
+    (tmp_path / "huge.toml").write_text(f"minimum = [0, 0, 0]\nmaximum = [1e30, 1, 1]\n{lamp}")
+    hand = hand_before(boxes(), tmp_path)
+    hand.viewer.on_drop(tmp_path / "huge.toml")
+    assert hand.message.startswith("huge.toml, light 'lamp': the aim must differ from the position, ")
+
+
 def test_leaving_first_names_the_changes_that_it_would_lose(tmp_path: Path) -> None:
     session = hand_before(boxes(), tmp_path).viewer.session
 

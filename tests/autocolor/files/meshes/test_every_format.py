@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.conversion import OUTPUTS
-from autocolor.files.formats import FILE_FORMATS, MESH_FORMATS, MeshFormat, format_of, read_mesh
+from autocolor.files.formats import FILE_FORMATS, MESH_FORMATS, Format, read_mesh, recognized
 from autocolor.files.meshes.repair import Placement
+from autocolor.files.opening import OUTPUTS
 from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 from tests.mutations import BY_HAND, Seed, written_seed
@@ -29,7 +29,7 @@ BEGINNING = [each for each in OURS if each.keys == ("file",) and each.begins is 
 
 
 @functools.cache
-def sample_of(mesh_format: MeshFormat) -> Seed:
+def sample_of(mesh_format: Format) -> Seed:
     """A sample of a format, by hand or as the program writes it."""
     by_hand = (each for each in SEEDS if each.read.endswith(mesh_format.suffixes))
     return next(by_hand, None) or next(
@@ -53,7 +53,7 @@ def is_same(mesh: Mesh, other: Mesh) -> bool:
 
 
 @pytest.mark.parametrize("mesh_format", OURS, ids=lambda each: each.name)
-def test_the_up_axis_becomes_z_and_the_scale_is_multiplied(tmp_path: Path, mesh_format: MeshFormat) -> None:
+def test_the_up_axis_becomes_z_and_the_scale_is_multiplied(tmp_path: Path, mesh_format: Format) -> None:
     files = written(tmp_path, sample_of(mesh_format))
     x, y, z = read_mesh(files).mesh.coordinates.T
     for up, axes in (("z", (x, y, z)), ("y", (x, -z, y)), ("x", (y, z, x))):
@@ -62,7 +62,7 @@ def test_the_up_axis_becomes_z_and_the_scale_is_multiplied(tmp_path: Path, mesh_
 
 
 @pytest.mark.parametrize("mesh_format", FILE_FORMATS, ids=lambda each: each.name)
-def test_a_folder_or_a_missing_file_is_refused(tmp_path: Path, mesh_format: MeshFormat) -> None:
+def test_a_folder_or_a_missing_file_is_refused(tmp_path: Path, mesh_format: Format) -> None:
     path = tmp_path / f"car{mesh_format.suffixes[0]}"
     assert refusal(read_mesh, {"file": path}) == f"{path}: there is no such file or folder; check the name"
     path.mkdir()
@@ -70,11 +70,11 @@ def test_a_folder_or_a_missing_file_is_refused(tmp_path: Path, mesh_format: Mesh
 
 
 @pytest.mark.parametrize("mesh_format", BEGINNING, ids=lambda each: each.name)
-def test_a_file_of_another_name_is_known_by_how_it_begins(tmp_path: Path, mesh_format: MeshFormat) -> None:
+def test_a_file_of_another_name_is_known_by_how_it_begins(tmp_path: Path, mesh_format: Format) -> None:
     path = written(tmp_path, sample_of(mesh_format))["file"]
     mesh = read_mesh({"file": path}).mesh
     again = path.rename(path.with_suffix(".model"))
-    assert format_of(again) is mesh_format
+    assert recognized(again, FILE_FORMATS) is mesh_format
     assert is_same(read_mesh({"file": again}).mesh, mesh)
 
 

@@ -9,10 +9,9 @@ import pytest
 
 from autocolor import Light, Mesh, Reflectance, View, read_scene, render, write_picture, write_scene
 from autocolor.batches.outputs import base_mark
-from autocolor.errors import InputError
-from autocolor.files.conversion import output_of
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import FILE, MeshReport, Placement, RawPolygons, repaired
+from autocolor.files.opening import output_of
 from autocolor.journal.places import checksum_of
 from autocolor.scene.geometry.normals import NodeNormals
 from autocolor.scene.mesh import has_same_tables
@@ -83,27 +82,22 @@ def test_pieces_and_repaired_polygons_keep_their_normals() -> None:
     assert vectors_of(mesh)[-1][0] == pytest.approx(UP)
 
 
-@pytest.mark.parametrize("up", ["x", "y", "z"])
-def test_normals_turn_with_the_coordinates_and_are_not_scaled(up: str) -> None:
-    mesh = mesh_of([[0, 1, 2, 3]], [UP], [[0, 0, 0, 0]], up, 1000.0).mesh
+def test_normals_turn_with_the_coordinates_and_are_not_scaled() -> None:
+    mesh = mesh_of([[0, 1, 2, 3]], [UP], [[0, 0, 0, 0]], "y", 1000.0).mesh
     side = np.cross(mesh.coordinates[1] - mesh.coordinates[0], mesh.coordinates[3] - mesh.coordinates[0])
     assert vectors_of(mesh) == [[(side / np.linalg.norm(side)).tolist()] * 4]
 
 
 @pytest.mark.parametrize(
-    ("rows", "missing", "sentence"),
-    [
-        ([0, 0, 0, 0], [], ()),
-        ([0, -1, 0, 0], [1], ("1 corner has no normal of its own; it was computed",)),
-        ([2, 2, 0, 2], [0, 1, 3], ("3 corners have no normals of their own; they were computed",)),
-        ([2, 1, 1, 9], None, ("4 corners have no normals of their own; they were computed",)),
-    ],
+    ("rows", "missing"), [([0, 0, 0, 0], []), ([0, -1, 0, 2], [1, 3]), ([2, 1, 1, 9], None)]
 )
 def test_missing_and_broken_normals_are_computed_and_counted(
-    rows: list[int], missing: list[int] | None, sentence: tuple[str, ...]
+    rows: list[int], missing: list[int] | None
 ) -> None:
-    report = mesh_of([[0, 1, 2, 3]], [[0, 0, 1e-200], [0, 0, 0], [np.inf, 0, 1]], [rows])
-    assert report.repairs == tuple(f"a.obj: {each}" for each in sentence)
+    report = mesh_of([[0, 1, 2, 3]], [[0, 0, 1e-100], [0, 0, 1e-200], [np.inf, 0, 1]], [rows])
+    count = 4 if missing is None else len(missing)
+    told = f"a.obj: computed the normals of corners that have none: {count}"
+    assert report.repairs == (told,) * (count > 0)
     vectors = vectors_of(report.mesh)
     assert vectors == (None if missing is None else [[None if at in missing else UP for at in range(4)]])
     assert report.mesh.normals.vectors[report.mesh.normals.numbers].tolist() == [[UP] * 4]
@@ -113,9 +107,7 @@ def test_the_normals_of_a_polygon_that_winds_the_other_way_are_turned_over() -> 
     report = mesh_of(
         [[0, 1, 2, 3], [3, 2, 1, 0], [0, 2, 1]], [UP, [4, 0, -3]], [[0] * 4, [0, 0, 0, 1], [0] * 3]
     )
-    assert report.repairs == (
-        "a.obj: the normals of 2 polygons point against the winding of their corners and were turned over",
-    )
+    assert report.repairs == ("a.obj: turned over the normals of polygons that wind the other way: 2",)
     first, second, third = vectors_of(report.mesh)
     assert first == [UP] * 4
     assert second[:3] == third[:3] == [[0, 0, -1]] * 3
@@ -144,15 +136,13 @@ def test_copies_of_a_mesh_keep_its_own_normals_which_make_it_another_scene(tmp_p
     assert base_mark(scene, None, ()) != base_mark(scene.replace(mesh=bare), None, ())
 
 
-@pytest.mark.parametrize("name", ["a.tables", "a.npz", "scene.toml", "npy/nodes.npy"])
+@pytest.mark.parametrize("name", ["a.tables", "a.npz", "npy/nodes.npy"])
 def test_what_is_written_is_read_with_the_same_normals(tmp_path: Path, name: str) -> None:
     mesh = with_normals(sphere(6, 4), tmp_path / "from.obj").with_scalars(MeshScalar("a", np.arange(20.0)))
     scene = read_scene(tmp_path / "from.obj").replace(mesh=mesh)
     path = tmp_path / name
     path.parent.mkdir(exist_ok=True)
-    if name == "scene.toml":
-        write_scene(tmp_path, scene)
-    elif name == "a.npz":
+    if name == "a.npz":
         write_picture(path, scene, render(scene, 8, 8))
     else:
         write = output_of(path).write
@@ -170,10 +160,6 @@ def test_a_scene_asks_for_the_normals_of_its_file(tmp_path: Path) -> None:
     for key, is_own in (("", False), ('normals = "file"', True), ('normals = "computed"', False)):
         scene.write_text(f'[[mesh]]\nfile = "a.obj"\n{key}\n')
         assert (read_scene(scene).mesh.own_normals is not None) is is_own
-    scene.write_text('[[mesh]]\nfile = "a.obj"\nnormals = "fiel"\n')
-    rule = "normals must be 'computed' or 'file', not 'fiel'; did you mean 'file'"
-    with pytest.raises(InputError, match=rule):
-        read_scene(scene)
     # A scene that is written beside the file looks the same.
     scene.unlink()
     write_scene(tmp_path, read_scene(tmp_path / "a.obj"))
@@ -191,9 +177,7 @@ test_a_mesh_refuses_normals_that_do_not_fit = refused(
     [
         (([UP], [[0, 0, 0, 1]]), "own normals: a number must be from -1 to 0; correct it"),
         (([UP], [[0, 0, 0]]), "own normals: their numbers must be intp of shape (1, 4), not (1, 3)"),
-        *(
-            (([[0, 0, z]], [[0] * 4]), "own normals: they must be unit vectors of float32; normalize them")
-            for z in (2, np.nan)
-        ),
+        (([[0, 0, np.nan]], [[0] * 4]),
+         "own normals: they must be unit vectors of float32; normalize them"),
     ],
-)
+)  # fmt: skip

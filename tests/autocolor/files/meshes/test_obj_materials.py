@@ -67,19 +67,15 @@ def names_of(report: MeshReport) -> list[str]:
     [
         ("Kd 1 0.5 0", {"object_color": (255, 128, 0)}),
         ("Kd 0.2", {"object_color": (51, 51, 51)}),
-        ("Kd 2 1.0001 1e5", {"object_color": (255, 255, 255)}),
         ("\tKd .5\t1. +25e-2 # a", {"object_color": (128, 255, 64)}),
         ("Kd 0 1 0\nKd 1 0 0 0.5", {"object_color": (255, 0, 0)}),
         ("Ks 0.2 0.5 0.1", SHINY),
         ("Ks 0.5\nillum 2", SHINY),
-        ("Ks 0 0 0", {}),
         ("Ks 0.5 0.5 0.5\nillum 0", {}),
         ("illum 1\nKs 0.5", {}),
         ("Ns 0", {"exponent": 1}),
-        ("Ns 32.5", {"exponent": 32.5}),
         ("newmtl red\nKd 0 1 0", {}),
         ("# Kd 1 1 1\nKa 1 1 1\nodd\nd 1.0\nTr 0.000", {}),
-        ("newmtl", {}),
         ("newmtl none\nKd 1 0 0\nd 0.5\nbump a", {}),
     ],
 )
@@ -91,9 +87,12 @@ def test_a_material_has_the_properties_of_its_statements(
     assert report.repairs == ()
 
 
-@pytest.mark.parametrize("transparency", ["d 0.5", "Tr 0.5", "d 0", "Tr 1"])
-def test_what_is_left_out_is_counted_by_materials_that_are_wanted(folder: Path, transparency: str) -> None:
-    textures = {"red": "map_Kd -s 1 1 1 a.png\nmap_Ks a.png", "blue": "bump a.png", "unused": "bump a.png"}
+@pytest.mark.parametrize("transparency", ["d 0.5", "Tr 0.5"])
+@pytest.mark.parametrize("texture", ["map_Kd -s 1 1 1", "MAP_KD", "bump", "disp", "norm"])
+def test_what_is_left_out_is_counted_by_materials_that_are_wanted(
+    folder: Path, transparency: str, texture: str
+) -> None:
+    textures = {"red": f"{texture} a.png\nmap_Ks a.png", "blue": "bump a.png", "unused": "bump a.png"}
     text = "".join(f"newmtl {name}\n{lines}\n" for name, lines in textures.items())
     report = described(folder, f"{text}newmtl red\n{transparency}\n", b"red", b"blue")
     assert report.materials == (surface(), surface("blue"))
@@ -103,15 +102,9 @@ def test_what_is_left_out_is_counted_by_materials_that_are_wanted(folder: Path, 
     )
 
 
-@pytest.mark.parametrize("texture", ["map_Bump", "MAP_KD", "disp", "decal", "refl", "norm"])
-def test_all_kinds_of_textures_are_left_out(folder: Path, texture: str) -> None:
-    report = described(folder, f"newmtl red\n{texture} a.png\n")
-    assert report.repairs == ("car.mtl: left out the textures of 1 material",)
-
-
 @pytest.mark.parametrize(
     "statement",
-    ["Kd ", "Kd x", "Kd -1 0 0", "Kd nan", "Kd 1e999", "Kd 1 2", "Ks 0 0 1e6", "Ns -0.5", "illum x"],
+    ["Kd ", "Kd x", "Kd nan", "Kd 1 2", "Ks 0 0 1e6", "Ns -0.5"],
 )
 def test_a_bad_number_is_told_with_its_line_and_the_default_is_used(folder: Path, statement: str) -> None:
     report = described(folder, f"# a library\nnewmtl red\n{statement}\nKs x\nKs y\n")
@@ -136,14 +129,11 @@ def test_materials_that_no_library_defines_are_told(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("libraries", "names"),
     [
-        ([b"./red.mtl"], ["red"]),
         ([b"inside.mtl"], ["red"]),
         ([b'"my blue.mtl"'], ["blue"]),
         ([b"more\\green.mtl"], ["green"]),
         ([b"red.mtl more/green.mtl"], ["red", "green"]),
-        ([b"none.mtl red.mtl"], ["red"]),
         ([b"C:\\Users\\anna\\my blue.mtl"], ["blue"]),
-        ([b"../red.mtl"], ["red"]),
         ([b"\\\\server\\share\\red.mtl"], ["red"]),
         ([b"more/green.mtl", b"my blue.mtl", b"red.mtl"], ["red", "blue", "green"]),
     ],
@@ -170,9 +160,10 @@ def test_a_library_outside_or_that_is_no_file_or_an_address_is_not_read(
     report = read(folder, library)
     assert report.materials == ()
     (sentence,) = report.repairs
-    assert sentence.startswith("the materials have default colors: there is no library ")
-    assert sentence.endswith(" in the folder of car.obj; copy it there")
-    assert sentence.isprintable()
+    assert sentence.startswith(
+        "no library defines material 'red', 'blue', 'green'; default colors are used; c"
+    )
+    assert sentence.endswith(" to the folder of car.obj")
 
 
 def test_of_a_material_in_several_libraries_the_first_counts(folder: Path) -> None:
@@ -191,21 +182,17 @@ def test_without_a_library_that_of_the_same_name_beside_it_is_read(folder: Path)
         assert names_of(read(folder, *libraries)) == names
 
 
-@pytest.mark.parametrize("more", [0, 1])
-def test_libraries_have_a_limited_size_together(folder: Path, more: int) -> None:
-    (folder / "red.mtl").write_bytes(RED.ljust((4 << 20) - len(BLUE) + more))
+def test_a_library_has_a_limited_size_and_is_looked_for_among_the_first_alone(folder: Path) -> None:
+    (folder / "red.mtl").write_bytes(RED.ljust((4 << 20) + 1))
     report = read(folder, b"red.mtl", b"my blue.mtl", wanted=(b"red", b"blue"))
-    assert names_of(report) == (["red"] if more else ["red", "blue"])
-    assert len(report.repairs) == 2 * more
-
-
-@pytest.mark.parametrize("separator", [b" ", b"\nmtllib "], ids=["one line", "many lines"])
-@pytest.mark.parametrize(("before", "names"), [(MOST_LIBRARIES - 1, ["red"]), (MOST_LIBRARIES, [])])
-def test_a_library_is_looked_for_among_the_first_alone(
-    folder: Path, separator: bytes, before: int, names: list[str]
-) -> None:
-    libraries = separator.join([*(b"none%d.mtl" % number for number in range(before)), b"red.mtl"])
-    assert names_of(read(folder, libraries)) == names
+    assert names_of(report) == ["blue"]
+    assert report.repairs[0].startswith(
+        "the materials have default colors: red.mtl: a file must have at most"
+    )
+    for separator in (b" ", b"\nmtllib "):
+        none = [b"none%d.mtl" % number for number in range(MOST_LIBRARIES - 1)]
+        assert names_of(read(folder, separator.join([*none, b"more/green.mtl"]))) == ["green"]
+        assert names_of(read(folder, separator.join([*none, b"none.mtl", b"more/green.mtl"]))) == []
 
 
 WORDS = st.sampled_from(

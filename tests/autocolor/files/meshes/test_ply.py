@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from autocolor.errors import InputError
 from autocolor.files.meshes import number_text, ply
 from autocolor.files.meshes.ply import ply_bytes, read_ply
-from autocolor.files.meshes.ply_elements import CUT_SHORT as CUT
 from autocolor.files.meshes.repair import FILE, MeshReport, Placement
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
@@ -149,18 +148,16 @@ def test_elements_with_any_properties_are_read_and_refused_if_they_are_cut(
     )
 
 
-@pytest.mark.parametrize("order", FORMATS)
-@pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
-def test_lines_end_in_any_way_and_faces_may_be_empty(path: Path, order: str, feed: str) -> None:
-    # The numbers of a binary file may begin like the end of a line.
+def test_faces_may_be_empty_and_numbers_begin_like_the_end_of_a_line(path: Path) -> None:
     elements: dict[str, Columns] = {
         "vertex": {"uchar heat": [10, 13, 10, 13], **xyz()},
         "face": {CORNERS: [(), (), (0, 1, 2, 3)]},
     }
-    mesh = read(path, ply_file(elements, order=order, feed=feed, breaks="\n \t\n")).mesh
-    assert mesh.scalars[0].values.tolist() == [10, 13, 10, 13]
-    assert mesh.coordinates.tolist() == [list(node) for node in SQUARE]
-    assert mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
+    for order in FORMATS:
+        for feed in ("\n", "\r\n", "\r"):
+            mesh = read(path, ply_file(elements, order=order, feed=feed, breaks="\n \t\n")).mesh
+            assert mesh.scalars[0].values.tolist() == [10, 13, 10, 13]
+            assert mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 
 LINE = (
@@ -176,7 +173,7 @@ test_a_wrong_header_is_refused = refused(
         (b"ply\nend_header\n", "a.ply: a header must have a line 'format', not none; export it again"),
         (
             header(FACE)[:-11],
-            "a.ply: a header must have a line 'end_header' within 16,777,216 bytes; export it again",
+            "a.ply: a header must have a line 'end_header', not none; export it again",
         ),
         *(
             (
@@ -199,8 +196,8 @@ test_a_wrong_header_is_refused = refused(
 
 
 def test_an_element_may_have_no_properties_and_a_header_no_last_line_feed(path: Path) -> None:
-    report = read(path, plate().replace(b"end_header", b"element empty 2\nelement none 0\nend_header"))
-    assert report.repairs == ("a.ply: skipped elements 'empty': 2",)
+    report = read(path, plate().replace(b"end_header", b"element none 0\nend_header"))
+    assert report.repairs == ()
     assert "must have the numbers x, y and z, not only none" in refusal(read, path, header()[:-1])
 
 
@@ -262,7 +259,7 @@ def test_other_numbers_are_scalars_which_comments_may_name(path: Path) -> None:
     ]
     assert report.repairs == (
         "a.ply: left out the colors of polygons",
-        "a.ply: scalar 'stress': 2 values above 1e30 in size were made missing",
+        "a.ply: scalar 'stress': values above 1e30 in size were made missing: 2",
     )
 
 
@@ -326,7 +323,7 @@ WRONG: list[tuple[Mapping[str, Columns], str]] = [
     ),
     (
         {"vertex": xyz(), "face": corners("int", [0, 1] * 500, [0, 1, 2] * 400)},
-        ", face 1: a polygon must have at most 1,000 corners, not 1,200; split it",
+        ", polygon 2: a polygon must have at most 1,000 corners, not 1,200; split it",
     ),
     (
         {"vertex": xyz(), "tristrips": corners("int", (0, 1, 2))},
@@ -339,12 +336,8 @@ test_what_is_refused = refused(
     [(ply_file(elements), f"a.ply{sentence}") for elements, sentence in WRONG]
     + [
         (
-            plate(order="", breaks="\n\n", corners=[(0, 1, 9)], vertex={"double z2": [0, 0, value, 0]}),
-            f"a.ply, line {sentence}; correct it",
-        )
-        for value, sentence in (
-            (0, f"19: {CORNER} 9"),
-            ("0x1", "15: a value must be a decimal number, nan or inf, not '0x1'"),
+            plate(order="", breaks="\n\n", vertex={"double z2": [0, 0, "0x1", 0]}),
+            "a.ply, line 15: a value must be a decimal number, nan or inf, not '0x1'; correct it",
         )
     ],
 )
@@ -355,6 +348,7 @@ def sized(count: int, *properties: str, data: bytes, order: str = "<") -> bytes:
     return header(f"element face {count}", *(f"property {each}" for each in properties), order=order) + data
 
 
+CUT = "the file is cut short or its header is wrong, export it again"
 OUTSIDE = "elements 'face' must end within the file, with lists of 0 or more values"
 WIDTH = (
     "a line of an element 'face' must have the values of x and of_it, with the count before each list, and no"
@@ -379,7 +373,7 @@ test_what_does_not_fit_its_counts_is_refused = refused(
         ),
         (
             sized(999_999_999_999, *WIDE, order="", data=b"1 0\n"),
-            f"a.ply: there must be 999,999,999,999 elements 'face', not 1; {CUT}",
+            f"a.ply: 999,999,999,999 {OUTSIDE}; {CUT}",
         ),
         *(
             (sized(2, *WIDE, order="", data=data), f"a.ply, line {line}: {WIDTH}")
@@ -394,20 +388,15 @@ test_what_does_not_fit_its_counts_is_refused = refused(
 
 
 def test_a_scalar_is_written_under_its_name_where_that_is_free() -> None:
-    names = ["stress", "von Mises", "x", "red", "part", "value_0", "größe", "vertex_index", "a.b-c_1"]
-    mesh = cube().with_scalars(*(MeshScalar(name, np.arange(8.0)) for name in names))
-    head = ply_bytes(mesh).partition(b"end_header")[0].decode()
+    scalars = (MeshScalar(name, np.arange(8.0)) for name in ("stress", "von Mises", "red", "part", "value_0"))
+    head = ply_bytes(cube().with_scalars(*scalars)).partition(b"end_header")[0].decode()
     written = [line.split()[-1] for line in head.splitlines() if line.startswith("property double")]
-    assert written[3:] == ["stress", *(f"value_{number}" for number in range(1, 8)), "a.b-c_1"]
+    assert written[3:] == ["stress", *(f"value_{number}" for number in range(1, 5))]
 
 
-@given(mesh=writable_meshes(), at_once=st.sampled_from([1, 3, 1 << 16]))
-def test_what_is_written_reads_back_equal(
-    mesh: Mesh, at_once: int, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(ply, "ROWS_AT_ONCE", at_once)
-        data = ply_bytes(mesh)
+@given(mesh=writable_meshes())
+def test_what_is_written_reads_back_equal(mesh: Mesh, tmp_path_factory: pytest.TempPathFactory) -> None:
+    data = ply_bytes(mesh)
     assert_equal(read(tmp_path_factory.getbasetemp() / "written.ply", data), mesh)
 
 

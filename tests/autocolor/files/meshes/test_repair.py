@@ -8,14 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.errors import InputError
 from autocolor.files.meshes.repair import (
     FLAT,
     LONGEST_NAME,
     MeshReport,
     Placement,
     RawPolygons,
-    _are_flat,
     _have_area,
     different,
     name_of,
@@ -102,30 +100,25 @@ def test_a_sound_mesh_is_left_alone_and_tables_keep_unused_nodes() -> None:
     assert report.mesh.coordinates.tolist() == SQUARE
 
 
-DROPPED = "; 1 polygon without area was dropped (polygon 1)"
-SHORTER = f"; 2 polygons with {SHORT} were dropped (the first: polygon 2)"
-
 test_a_mesh_without_polygons_left_is_refused = refused(
     lambda polygons: mesh_of(*polygons),
     [
         (polygons, f"a.obj: a mesh must have a polygon with area, not none{causes}; add polygons")
         for polygons, causes in (
             ([], ""),
-            ([[0, 1, 4]], DROPPED),
-            ([[0, 1, 4], [0, 1], [2]], SHORTER + DROPPED),
+            (
+                [[0, 1, 4], [0, 1], [2]],
+                f"; 2 polygons with {SHORT} were dropped; 1 polygon without area was dropped",
+            ),
+        )
+    ]
+    + [
+        (
+            [[0, 1, 2], [0, 1] * 501],
+            "a.obj, polygon 2: a polygon must have at most 1,000 corners, not 1,002; split it",
         )
     ],
 )
-
-
-@given(st.lists(st.lists(st.integers(0, 5), max_size=9), max_size=6))
-def test_whatever_is_left_has_area_and_normals(polygons: list[list[int]]) -> None:
-    try:
-        mesh = mesh_of(*polygons).mesh
-    except InputError:
-        return
-    assert np.isfinite(mesh.normals.vectors).all()
-    assert all(len(set(row)) >= 3 for row in mesh.node_numbers.tolist())
 
 
 def flat(corners: list[list[float]]) -> bool:
@@ -140,7 +133,7 @@ def flat(corners: list[list[float]]) -> bool:
     quads=st.lists(
         st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=4, max_size=4), min_size=1, max_size=30
     ),
-    scale=st.sampled_from([1.0, 2.0**-100, 2.0**-400, 2.0**-530, 2.0**90]),
+    scale=st.sampled_from([1.0, 2.0**-200, 2.0**90]),
     far=st.sampled_from([0.0, 1e3]),
 )
 def test_a_polygon_has_area_at_any_size_unless_both_its_diagonals_make_flat_triangles(
@@ -180,8 +173,8 @@ def test_names_are_different_printable_and_not_too_long() -> None:
     assert name_of(("x" + "ü" * 1000).encode()) == "x" + "ü" * (LONGEST_NAME - 1)
 
 
-@pytest.mark.parametrize("size", [1.0, 1e-30, 1e30])
-def test_a_polygon_is_flat_if_its_triangles_are_flatter_than_a_share_of_its_size(size: float) -> None:
-    heights = [FLAT / 2, FLAT * (1 - 1e-9), 2 * FLAT, 1.0]
-    corners = np.array([[(0, 0, 0), (1, 0, 0), (1, h, 0), (0, h, 0)] for h in heights]) * size
-    assert _are_flat(corners).tolist() == [True, True, False, False]
+def test_a_polygon_is_flat_if_its_triangles_are_flatter_than_a_share_of_its_size() -> None:
+    for size in (1e-30, 1e30):
+        corners = [[(0, 0, 0), (1, 0, 0), (1, h, 0), (0, h, 0)] for h in (FLAT / 2, 2 * FLAT)]
+        coordinates = np.array(corners).reshape(-1, 3) * size
+        assert _have_area(coordinates, np.arange(8).reshape(2, 4)).tolist() == [False, True]

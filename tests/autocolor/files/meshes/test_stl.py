@@ -8,10 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.arrays import Floats, Singles
-from autocolor.files.meshes import stl, welding
+from autocolor.files.meshes import stl
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.meshes.stl import (
-    MUST_BE,
     TRIANGLE,
     begins_as_stl,
     read_binary,
@@ -19,7 +18,7 @@ from autocolor.files.meshes.stl import (
     read_text,
     stl_bytes,
 )
-from autocolor.files.meshes.welding import FACTORS, welded
+from autocolor.files.meshes.welding import welded
 from autocolor.scene.mesh import Mesh
 from tests.autocolor.files.refusals import refusal, refused
 
@@ -64,17 +63,10 @@ def test_a_cube_has_eight_nodes_however_it_is_written(path: Path, data: bytes) -
     assert report.repairs == ()
 
 
-def test_the_normals_of_a_cube_point_outward() -> None:
-    records = np.frombuffer(stl_bytes(OF_QUADS), TRIANGLE, 12, 84)
-    centers = records["corners"].mean(axis=1) - 0.5
-    assert np.array_equal(records["normal"], np.sign(np.where(np.abs(centers) > 0.4, centers, 0)))
-
-
 @pytest.mark.parametrize("size", [1e-30, 1.0, 1e29])
 def test_a_quad_is_cut_along_its_diagonal_and_normals_are_unit_vectors_or_zero(
-    size: float, monkeypatch: pytest.MonkeyPatch
+    size: float,
 ) -> None:
-    monkeypatch.setattr(stl, "POLYGONS_AT_ONCE", 1)
     nodes = np.array([[0, 0, 0], [3, 0, 0], [4, 1, 0], [1, 1, 0], [0, 0, 5]]) * size
     mesh = Mesh(nodes, np.array([[0, 1, 2, 3], [1, 2, 4, 4], [0, 0, 1, 4]]))
     with np.errstate(all="raise"):
@@ -96,10 +88,9 @@ def test_triangles_without_area_are_dropped_and_counted(path: Path) -> None:
 
 
 def test_what_is_skipped_stands_in_the_report(path: Path) -> None:
-    for more in (1, 50):
-        assert read(path, binary() + b"x" * more).repairs == (
-            f"cube.stl: skipped bytes after the last triangle: {more}",
-        )
+    assert read(path, binary() + b"x" * 50).repairs == (
+        "cube.stl: skipped bytes after the last triangle: 50",
+    )
 
 
 def test_other_texts_may_begin_with_solid() -> None:
@@ -143,7 +134,7 @@ def test_a_coordinate_may_be_the_largest_and_no_larger(path: Path, sign: int) ->
     solid = f"solid a\n{A}endsolid\n"
     assert read_text(solid.replace("1e0", f"{sign}e30").encode(), "a.stl", "a")[0][2, 1] == sign * 1e30
     larger = f"{sign}.0000000000000002e30"
-    assert f"in size, not '{larger}'" in refusal(read, path, solid.replace("1e0", larger).encode())
+    assert f"not '{larger}'" in refusal(read, path, solid.replace("1e0", larger).encode())
 
 
 A = "facet normal nan 0 x\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\nendfacet\n"
@@ -162,13 +153,14 @@ def test_solids_of_a_text_are_parts(path: Path) -> None:
         f"solid the hood\n{A}{B}endsolid the hood\n\nsolid\nendsolid\n  SOLID the hood\n{B.upper()}ENDSOLID\n"
     )
     report = read(
-        path, (text + "solid\n" + A.replace("\n", " ").replace(" ", "\n\n \t") + "endsolid").encode()
+        path,
+        (text + "solid\n" + A.replace("\n", " ").replace(" ", "\n\n \t") + f"endsolid\n{A}endsolid").encode(),
     )
     mesh = report.mesh
-    assert mesh.part_names == ("the hood", "the hood 2", "cube")
-    assert mesh.part_numbers.tolist() == [0, 0, 1, 2]
+    assert mesh.part_names == ("the hood", "the hood 2", "cube", "cube 2")
+    assert mesh.part_numbers.tolist() == [0, 0, 1, 2, 3]
     first, other = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[-5, 0.5, 5], [1, 0, 0], [0, 1, 0]]
-    assert mesh.coordinates[mesh.node_numbers[:, :3]].tolist() == [first, other, other, first]
+    assert mesh.coordinates[mesh.node_numbers[:, :3]].tolist() == [first, other, other, first, first]
     assert report.repairs == ()
 
 
@@ -197,58 +189,37 @@ def test_the_habits_of_other_programs_are_read(path: Path, habit: str) -> None:
     assert report.repairs == ("cube.stl: the last solid has no 'endsolid': the file may be cut short",)
     wrong = f"solid\n{habit}{B.replace('-5', 'x')}"
     line = wrong.count("\n", 0, wrong.index("vertex x")) + 1
-    assert refusal(read, path, wrong.encode()).startswith(f"cube.stl, line {line}: a coordinate must be ")
-
-
-MUST = MUST_BE + " (here {!r}), not {!r}; correct it"
-NO_END = MUST_BE + ", and not end before {!r}; correct it"
-
-
-OUTSIDE = "a facet must stand in a solid, not outside; add a line 'solid'"
+    assert refusal(read, path, wrong.encode()).startswith(f"cube.stl, line {line}: a facet must be ")
 
 
 @pytest.mark.usefixtures("_blocks")
 @pytest.mark.parametrize(
-    ("text", "line", "sentence"),
+    ("text", "line", "wanted", "wrong"),
     [
-        (f"solid\n{A}endsolid\n\n{A}solid\n", 11, OUTSIDE),
-        ("\nsolid\nendsolid\nendsolid\n", 4, "a solid must begin before it ends; remove the line"),
-        (
-            f"solid\n{A}{A.replace('endloop', 'vertex 1 1 1 endloop')}endsolid\n",
-            14,
-            MUST.format("endloop", "vertex"),
-        ),
-        (f"solid a\n{A.partition('endloop')[0]}", 6, NO_END.format("endloop")),
+        (f"solid\n{A}{A.replace('endloop', 'vertex 1 1 1 endloop')}endsolid\n", 14, "endloop", "'vertex'"),
+        (f"solid a\n{A.partition('endloop')[0]}", 6, "endloop", "end"),
+        ("solid a\nfacet normal 0\n", 2, ".", "end"),
         *(
-            (
-                f"solid a\n{A.replace('1e0', number)}endsolid\n",
-                6,
-                f"a coordinate must be a decimal number of at most 1e30 in size, not '{number}'; correct it",
-            )
-            for number in ("nan", "1_0", "0x1", "1e31", "1,5", "inf", ".")
+            (f"solid a\n{A.replace('1e0', number)}endsolid\n", 6, ".", repr(number))
+            for number in ("nan", "1_0", "1e31")
         ),
     ],
 )
-def test_a_wrong_text_is_refused(text: str, line: int, sentence: str) -> None:
-    assert refusal(read_text, text.encode(), "a.stl", "a") == f"a.stl, line {line}: {sentence}"
-
-
-points = st.lists(
-    st.tuples(*[st.sampled_from([0.0, -0.0, 1.0, 1 + 2**-23, 1e-45, -2.5, 1e30])] * 3), max_size=40
-)
+def test_a_wrong_text_is_refused(text: str, line: int, wanted: str, wrong: str) -> None:
+    assert refusal(read_text, text.encode(), "a.stl", "a") == (
+        f"a.stl, line {line}: a facet must be 'facet normal . . . outer loop vertex . . . vertex . . . vertex"
+        f" . . . endloop endfacet' (here '{wanted}'), with numbers of at most 1e30 in size for the points,"
+        f" not {wrong}; correct it"
+    )
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-@pytest.mark.parametrize(("rounds", "factors"), [(4, FACTORS), (1, FACTORS), (4, (0, 0, 0))])
-@given(corners=points)
+@given(corners=st.lists(st.tuples(*[st.sampled_from([0.0, -0.0, 1.0, 1 + 2**-23, 1e-45, -2.5, 1e30])] * 3)))
 def test_equal_points_become_one_in_the_order_of_their_first_corners(
-    dtype: type, rounds: int, factors: tuple[int, ...], corners: list[tuple[float, float, float]]
+    dtype: type, corners: list[tuple[float, float, float]]
 ) -> None:
     given_corners: Floats | Singles = np.array(corners, dtype).reshape(-1, 3)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(welding, "FACTORS", factors)
-        patched.setattr(welding, "ROUNDS", rounds)
-        found, rows = welded(given_corners)
+    found, rows = welded(given_corners)
     # The patient way: -0 equals 0 as a key of a dictionary, too.
     numbers: dict[tuple[float, ...], int] = {}
     expected = [numbers.setdefault(tuple(corner), len(numbers)) for corner in given_corners.tolist()]

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -48,15 +47,7 @@ def test_an_empty_mesh_odd_names_and_scalars_are_kept(tmp_path: Path) -> None:
         assert np.array_equal(one.values, other.values, equal_nan=True)
 
 
-def test_a_table_file_without_scalars_is_still_read(tmp_path: Path) -> None:
-    older = dataclasses.replace(TABLE_FILE, formats=TABLE_FILE.formats[1:], series={})
-    again = read(tmp_path, array_file_bytes(older, {"part_names": ["cube"]}, ARRAYS))
-    assert np.array_equal(again.coordinates, cube().coordinates)
-    assert again.scalars == ()
-
-
-ARRAYS = {name: getattr(cube(), name) for name in TABLE_FILE.arrays}
-IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of"
+IS_NO_SCALAR = "its header must be as autocolor wrote it, and is not ("
 
 
 @pytest.mark.parametrize(
@@ -64,13 +55,13 @@ IS_NO_SCALAR = "mesh_scalars[1] must be a table of name and of"
     [
         ({"mesh_scalars": [{"name": "a", "of": "node"}]}, {}, "there must be one value a node"),
         ({"mesh_scalars": [{"name": "a"}]}, {}, IS_NO_SCALAR),
-        ({"mesh_scalars": ["a"]}, {}, f"{IS_NO_SCALAR}, not 'a'"),
+        ({"mesh_scalars": ["a"]}, {}, IS_NO_SCALAR),
         ({}, {"node_numbers": np.array([[0, 1, 2, 99]])}, "a node number must be a row of the node table"),
         ({}, {"coordinates": np.full((8, 3), np.nan)}, "coordinates must be finite"),
-        ({}, {"coordinates": np.zeros((8, 2))}, "its shape must be (rows, 3)"),
+        ({}, {"coordinates": np.zeros((8, 2))}, "coordinates must be <f8 of shape (None, 3), not"),
         ({"part_names": ["a", "a"]}, {}, "part names must differ"),
         ({"part_names": [3]}, {}, "part names must be strings"),
-        ({"part_names": "a"}, {}, "a part number must be a row of the part table"),
+        ({"part_names": "a"}, {}, "part names must be strings"),
     ],
 )
 def test_a_table_file_of_no_mesh_is_refused(
@@ -78,7 +69,7 @@ def test_a_table_file_of_no_mesh_is_refused(
 ) -> None:
     header = {"part_names": ["a"], "mesh_scalars": [], **header}
     scalars = {"mesh_scalar_0": np.zeros(7)} if header["mesh_scalars"] else {}
-    sentence = refusal(read, tmp_path, array_file_bytes(TABLE_FILE, header, {**ARRAYS, **arrays, **scalars}))
+    sentence = refusal(read, tmp_path, array_file_bytes(TABLE_FILE, cube(), header, {**arrays, **scalars}))
     assert sentence.startswith("mesh.tables: ")
     assert problem in sentence
     assert sentence.endswith("; write the scene again")

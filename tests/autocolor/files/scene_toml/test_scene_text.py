@@ -8,10 +8,8 @@ from hypothesis import given
 from autocolor import Light, Scene
 from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport
-from autocolor.files.scene_toml.scene_file import report_of_text
-from autocolor.files.scene_toml.scene_text import (
-    edited_to,
-)
+from autocolor.files.scene_toml.scene_file import read_scene_file
+from autocolor.files.scene_toml.scene_text import edited_to
 from autocolor.scene.columns import with_values
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.strategies import of_mesh
@@ -19,45 +17,25 @@ from tests.autocolor.strategies import of_mesh
 MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no part 0\nf 1 2 3 4\no part 1\nf 1 2 3\n"
 
 
-INLINE = """\
-# Mine.
-lights = [ {name="key", position=[1,2,3]}, {name="b", position=[1,2,3], flaps={x={minimum=0}},\
- half_spaces={left={point=[0,0,0], direction=[1,0,0]}, b={point=[1,0,0], direction=[1,0,0], on=false}},\
- only_parts=["part 0"], follows="eye"} ]
-mesh = [ {file="car.obj"} ]
-view = { eye = [1,2,3], target=[0,0,0] }
-views = [ {name="hood", eye=[1,2,3], target=[0,0,0]} ]
-parts = { "part 0" = {surface="body"}, "part 1".surface = "glass" }
-surfaces = { body = { diffuse = 0.5, model="blinn", exponent = 3 }, glass = {} }
-scalar = { name = "z", limits = [0, 1] }
-exposure = { body = [0.0, 1.0] }
-"""
-
-HEADERS = """\
+MIXED = """\
 # Mine.
 view.eye = [1,2,3]
 view.target = [0,0,0]
-parts."part 0".surface = "body"
-parts."part 1".surface = "glass"
-scalar.name = "z"
+views = [ {name="hood", eye=[1,2,3], target=[0,0,0]} ]
+parts = { "part 0" = {surface="body"}, "part 1".surface = "glass" }
+scalar = { name = "z", limits = [0, 1] }
 exposure.body = [0.0, 1.0]
 exposure.object = [0.0, 1.0]
-[[views]]
-name = "hood"
-eye = [1,2,3]
-direction = [1,0,0]
 [surfaces]
 [surfaces.glass]
 [surfaces.body]
 diffuse = 0.5
+model = "blinn"
 [[lights]]
-name = "rim"
+name = "rim"  # behind
 position = [1,2,3]
 [lights.flaps.x]
 minimum = 0.5
-[lights.half_spaces.right]
-point = [0,0,0]
-direction = [1,0,0]
 [[mesh]]
 file = "car.obj"
 [[lights]]
@@ -67,77 +45,8 @@ flaps.z.on = false
 half_spaces.left.point = [0,0,0]
 half_spaces.left.direction = [1,0,0]
 half_spaces."barn door" = { point = [1,0,0], direction = [1,0,0], edge_width = 0.1 }
-except_surfaces = ["glass", "body"]
+only_parts = ["part 0"]
 """
-
-SHORT = '# Mine.\n[[mesh]]\nfile = "car.obj"\n'
-
-
-@pytest.fixture(scope="module")
-def meshes(tmp_path_factory: pytest.TempPathFactory) -> list[MeshReport]:
-    path = tmp_path_factory.mktemp("mesh") / "car.obj"
-    path.write_text(MESH)
-    return [read_mesh({"file": path})]
-
-
-def read(text: bytes, meshes: list[MeshReport]) -> Scene:
-    return report_of_text(text, Path("car", "scene.toml"), meshes=meshes).scene
-
-
-def edited(text: str, scene: Scene, meshes: list[MeshReport], complete: bool = False) -> str:
-    data = edited_to(text.encode(), scene, lambda data: read(data, meshes), complete=complete)
-    assert data is not None
-    return data.decode()
-
-
-@pytest.mark.parametrize("text", [INLINE, HEADERS, SHORT])
-@given(drawn=linked_scenes())
-def test_a_file_in_any_style_is_changed_to_any_scene(
-    text: str, drawn: Scene, meshes: list[MeshReport]
-) -> None:
-    assert edited(text, read(text.encode(), meshes), meshes) == text
-    scene = of_mesh(drawn, meshes[0].mesh)
-    after = edited(text, scene, meshes)
-    assert with_values(read(after.encode(), meshes), {"mesh": scene.mesh, "name": scene.name}).equals(scene)
-    assert after.count("# Mine.") == 1
-    # Once there, it stays.
-    assert edited(after, scene, meshes) == after
-
-
-def test_surfaces_in_another_order_are_written_in_that_order(meshes: list[MeshReport]) -> None:
-    for text in (INLINE, HEADERS):
-        scene = read(text.encode(), meshes)
-        one, other = scene.surfaces
-        new = one.replace(name="new")
-        for surfaces in ((other, one), (one, other, new), (other, new, one)):
-            after = edited(text, scene.replace(surfaces=surfaces), meshes)
-            assert read(after.encode(), meshes).surfaces == surfaces
-            assert after.startswith("# Mine.\n")
-
-
-def test_a_renamed_light_keeps_its_place_and_its_comment(meshes: list[MeshReport]) -> None:
-    text = HEADERS.replace('"rim"\n', '"rim"  # behind\n')
-    scene = read(text.encode(), meshes).with_light("rim", name="moon")
-    assert edited(text, scene, meshes) == text.replace('"rim"', '"moon"')
-
-
-def test_a_text_that_cannot_be_read_or_never_gives_the_scene_is_given_up(meshes: list[MeshReport]) -> None:
-    scene = read(SHORT.encode(), meshes)
-    assert edited_to(b"ambient = 'x'", scene, lambda data: read(data, meshes)) is None
-    assert edited_to(SHORT.encode(), scene.replace(ambient=0.7), lambda _: scene) is None
-
-
-@pytest.mark.parametrize("text", [INLINE, HEADERS, SHORT])
-def test_a_text_is_completed_with_all_that_it_does_not_tell(text: str, meshes: list[MeshReport]) -> None:
-    scene = read(text.encode(), meshes)
-    after = edited(text, scene, meshes, complete=True)
-    again = report_of_text(after.encode(), Path("car", "scene.toml"), meshes=meshes)
-    assert again.scene.replace(mesh=scene.mesh).equals(scene)
-    assert again.created == ()
-    assert after.count("# Mine.") == 1
-    assert after.count("two_sided") == len(scene.surfaces)
-    assert edited(after, scene, meshes, complete=True) == after
-
 
 COMMENTED = """\
 # Mine.
@@ -154,6 +63,45 @@ lights = [
   ], intensity = 1 }, # the lamp
 ]
 """
+
+PLACE = Path("car", "scene.toml")
+SHORT = '# Mine.\n[[mesh]]\nfile = "car.obj"\n'
+
+
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory: pytest.TempPathFactory) -> list[MeshReport]:
+    path = tmp_path_factory.mktemp("mesh") / "car.obj"
+    path.write_text(MESH)
+    return [read_mesh({"file": path})]
+
+
+def read(text: bytes, meshes: list[MeshReport]) -> Scene:
+    return read_scene_file(PLACE, data=text, meshes=meshes).scene
+
+
+def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
+    data = edited_to(text.encode(), scene, PLACE, meshes)
+    assert data is not None
+    return data.decode()
+
+
+@pytest.mark.parametrize("text", [MIXED, COMMENTED, SHORT])
+@given(drawn=linked_scenes())
+def test_a_file_in_any_style_is_changed_to_any_scene(
+    text: str, drawn: Scene, meshes: list[MeshReport]
+) -> None:
+    assert edited(text, read(text.encode(), meshes), meshes) == text
+    scene = of_mesh(drawn, meshes[0].mesh)
+    after = edited(text, scene, meshes)
+    assert with_values(read(after.encode(), meshes), {"mesh": scene.mesh, "name": scene.name}).equals(scene)
+    assert after.count("# Mine.") == 1
+    # Once there, it stays.
+    assert edited(after, scene, meshes) == after
+
+
+def test_a_renamed_light_keeps_its_place_and_its_comment(meshes: list[MeshReport]) -> None:
+    scene = read(MIXED.encode(), meshes).with_light("rim", name="moon")
+    assert edited(MIXED, scene, meshes) == MIXED.replace('"rim"', '"moon"')
 
 
 def test_comments_within_arrays_stay_when_a_light_is_changed_added_or_removed(

@@ -59,20 +59,11 @@ def loosen(path: Path, table: str) -> None:
 
 def is_equal(one: Scene, other: Scene) -> bool:
     """Whether two scenes are equal in all tables, those of the mesh included."""
-    a, b = one.mesh, other.mesh
-    return (
-        np.array_equal(a.coordinates, b.coordinates)
-        and np.array_equal(a.node_numbers, b.node_numbers)
-        and np.array_equal(a.part_numbers, b.part_numbers)
-        and a.part_names == b.part_names
-        and a.crease_angle == b.crease_angle
-        and [(each.name, each.of) for each in a.scalars] == [(each.name, each.of) for each in b.scalars]
-        and all(
-            np.array_equal(x.values, y.values, equal_nan=True)
-            for x, y in zip(a.scalars, b.scalars, strict=True)
-        )
-        and one.replace(mesh=b).equals(other)
-    )
+    meshes = one.mesh, other.mesh
+    a, b = ([m.coordinates, m.node_numbers, m.part_numbers, *(s.values for s in m.scalars)] for m in meshes)
+    c, d = ([m.part_names, m.crease_angle, *((s.name, s.of) for s in m.scalars)] for m in meshes)
+    are_close = c == d and all(np.array_equal(x, y, equal_nan=True) for x, y in zip(a, b, strict=True))
+    return are_close and one.replace(mesh=other.mesh).equals(other)
 
 
 def tables_of(path: Path) -> dict[str, list[tuple[Any, ...]]]:

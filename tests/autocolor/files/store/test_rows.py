@@ -5,20 +5,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import InputError, read_scene
-from autocolor.budget import MEMORY
 from autocolor.files.store import rows as module
 from autocolor.files.store.store_file import read_store
 from tests.autocolor.files.store.stores import run, small_scene, small_store, tables_of
 
 
-def test_a_row_that_is_added_needs_no_more_than_a_scene_file_does(tmp_path: Path) -> None:
+def test_rows_and_columns_that_a_scene_file_may_lack_a_store_may_lack(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(
         path,
         "INSERT INTO lights (name, position_x, position_y, position_z) VALUES ('fill', 1, 2, 3)",
         "INSERT INTO surfaces (name, model, roughness) VALUES ('metal', 'cook-torrance', 0.2)",
         "UPDATE lights SET flaps_z_maximum = 0.5 WHERE name = 'rim'",
+        "ALTER TABLE lights DROP COLUMN falloff",
         "UPDATE surfaces SET fresnel_curve = '[[0, 0.04], [90, 1]]' WHERE name = 'glass'",
     )
     scene = read_store(path).scene
@@ -41,23 +40,6 @@ def test_tables_that_are_missing_are_created_and_told(tmp_path: Path) -> None:
     run(path, "DROP TABLE parts")
     own = read_store(path, surfaces="parts").scene
     assert [(part.name, part.surface) for part in own.parts] == [("hood", "hood"), ("roof", "roof")]
-
-
-def test_a_store_that_lacks_columns_gives_their_defaults(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(path, "UPDATE lights SET flaps_z_maximum = 0.5 WHERE name = 'rim'")
-    run(path, "ALTER TABLE lights DROP COLUMN falloff")
-    expected = small_scene().with_light("rim", flaps={"z": {"maximum": 0.5}})
-    assert read_store(path).scene.lights == expected.lights
-
-
-def test_too_many_rows_are_refused_before_they_are_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(module, "BYTES_OF_ROW", MEMORY // 5 + 1)
-    with pytest.raises(InputError, match=r"nodes: to read 5 rows must take .*; leave rows out, or allow it"):
-        read_store(small_store(tmp_path))
-    assert len(read_scene(small_store(tmp_path, "allowed.sqlite"), limit=1.1).mesh.coordinates) == 5
 
 
 def test_values_belong_to_nodes_whose_numbers_a_double_does_not_hold(tmp_path: Path) -> None:

@@ -1,36 +1,18 @@
 from __future__ import annotations
 
-import math
-import sqlite3
-from contextlib import closing
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from autocolor import BlinnPhong, Flap, Flaps, InputError, Light, Paint, Surface
-from autocolor.checks import Color
+from autocolor import Flap, Flaps, InputError, Light, Surface
 from autocolor.files.store import schema as module
-from autocolor.files.store.schema import (
-    RowTable,
-    SqlValue,
-    columns_of,
-    plain_row,
-    row_values,
-)
+from autocolor.files.store.schema import columns_of
 from autocolor.files.store.store_file import read_store
-from autocolor.scene.columns import Column, Row, Tier, from_plain, keys_of
-from autocolor.scene.kinds import Boolean, ColorKind, Number, OneOf, Text, VectorKind, Whole
-from autocolor.scene.reflection_models import MODELS
-from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References
+from autocolor.scene.columns import Row, keys_of
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import NamedView, View
-from autocolor.testing import lights, surfaces, vectors
 from tests.autocolor.files.store.stores import small_store
 
 
@@ -42,86 +24,8 @@ def test_a_table_of_too_many_rows_is_refused_before_it_is_read(
         read_store(small_store(tmp_path))
 
 
-FREE = Tier.NOTHING
-
-
-@dataclass(frozen=True)
-class Inner(Row):
-    low: Annotated[float, Column(Number(endless=-math.inf), FREE, "")] = -math.inf
-    shut: Annotated[bool, Column(Boolean(), FREE, "")] = False
-
-
-@dataclass(frozen=True)
-class MadeUp(Row):
-    """A row class with a column of each kind, which nothing else knows of."""
-
-    name: Annotated[str, Column(Text(), FREE, "")]
-    order: Annotated[int, Column(Whole(1, 5), FREE, "")]
-    group: Annotated[str, Column(OneOf(("a", "it's")), FREE, "")] = "it's"
-    place: Annotated[tuple[float, float, float], Column(VectorKind(), FREE, "")] = (1.0, 2.0, 3.0)
-    way: Annotated[tuple[float, float, float] | None, Column(VectorKind(has_length=True), FREE, "")] = None
-    tint: Annotated[Color | None, Column(ColorKind(), FREE, "")] = None
-    model: Annotated[Row, Column(OneRowOf(MODELS), FREE, "")] = field(default_factory=BlinnPhong)
-    near: Annotated[object, Column(Reference("lights", "here"), FREE, "")] = "here"
-    all: Annotated[tuple[str, ...] | None, Column(References("lights"), FREE, "")] = None
-    inner: Annotated[Inner | None, Column(Nested(Inner), FREE, "")] = None
-    paint: Annotated[Paint, Column(Nested(Paint, inline=True), FREE, "")] = field(default_factory=Paint)
-
-
-texts = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=9)
-made_up = st.builds(
-    MadeUp,
-    texts,
-    st.integers(1, 5),
-    st.sampled_from(["a", "it's"]),
-    vectors(),
-    st.none() | vectors().filter(any),
-    st.none() | st.just((1, 2, 3)),
-    st.sampled_from([model() for model in MODELS.values()]),
-    texts | st.just('["a"]'),
-    st.none() | st.lists(texts, max_size=3),
-    st.none() | st.builds(Inner, st.just(-math.inf) | st.floats(-5, 5), st.booleans()),
-)
-
-
-def values_of(row: Row) -> dict[str, SqlValue]:
-    """The values of a row by the names of the columns of its class."""
-    columns = columns_of(type(row))
-    return dict(zip([column.name for column in columns], row_values(columns, row), strict=True))
-
-
-def through_a_table(row_class: type[Row], values: dict[str, SqlValue]) -> dict[str, SqlValue]:
-    """All values of a row as a table gives them back that was made for its class."""
-    with closing(sqlite3.connect(":memory:")) as connection:
-        connection.execute("CREATE TABLE surfaces (name TEXT UNIQUE)")
-        connection.execute(RowTable("rows", row_class).definition)
-        names, marks = ", ".join(f'"{name}"' for name in values), ", ".join("?" * len(values))
-        connection.execute(f"INSERT INTO rows ({names}) VALUES ({marks})", tuple(values.values()))
-        connection.row_factory = sqlite3.Row
-        return dict(connection.execute("SELECT * FROM rows").fetchone())
-
-
-@given(made_up | lights() | surfaces("body"))
-def test_a_row_of_any_class_comes_back_from_its_table(row: Row) -> None:
-    back = through_a_table(type(row), values_of(row))
-    assert from_plain(type(row), plain_row(columns_of(type(row)), back)) == row
-
-
-@pytest.mark.parametrize("cls", [Scene, View, NamedView, Scalar, Light, Surface, Part, Flap, Flaps, MadeUp])
+@pytest.mark.parametrize("cls", [Scene, View, NamedView, Scalar, Light, Surface, Part, Flap, Flaps])
 def test_every_key_of_a_class_has_its_columns(cls: type[Row]) -> None:
     held_elsewhere = {"mesh", "parts", "surfaces", "lights", "views"} if cls is Scene else set()
     found = {column.path[0] for column in columns_of(cls)}
     assert found == keys_of(cls).keys() - held_elsewhere
-
-
-def test_a_table_fills_in_the_defaults_of_the_row() -> None:
-    back = through_a_table(MadeUp, {"name": "new", "order": 2})
-    assert from_plain(MadeUp, plain_row(columns_of(MadeUp), back)) == MadeUp("new", 2)
-
-
-def test_a_row_in_a_row_that_is_absent_has_no_infinite_limits() -> None:
-    values = values_of(MadeUp("plain", 1))
-    assert plain_row(columns_of(MadeUp), values).get("inner") is None
-    shut = values_of(MadeUp("shut", 1, inner=Inner(shut=True)))
-    assert (shut["inner_low"], shut["inner_shut"]) == (None, 1)
-    assert plain_row(columns_of(MadeUp), shut)["inner"] == {"low": -math.inf, "shut": True}

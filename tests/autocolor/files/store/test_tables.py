@@ -8,11 +8,9 @@ from pathlib import Path
 
 import pytest
 
-import autocolor
 from autocolor import InputError, MissingInputError, UsageError, WriteError, open_tables
 from autocolor.files.opening import read_scene
-from autocolor.files.scene_writing import write_scene
-from autocolor.files.store.tables import LONGEST_COMPUTED, Tables, tables_of
+from autocolor.files.store.tables import Tables, tables_of
 from tests.autocolor.files.store.stores import contents, is_equal, run, small_scene, small_store
 from tests.tables import refused
 
@@ -33,15 +31,13 @@ def test_rows_are_selected_joined_and_given_by_name(tables: Tables) -> None:
     assert tables.columns("nodes") == ["node", "x", "y", "z"]
     assert {"scene", "nodes", "polygons", "parts", "view"} <= set(tables.names)
     assert is_equal(tables.scene(), small_scene())
-    assert tables.answer('SELECT 1 AS a, 2 AS "a 2", 3 AS a').columns == ("a", "a 2", "a 3")
+    assert tables.answer('SELECT 1 AS a, 2 AS "a 2", 3 AS a')[0] == ("a", "a 2", "a 3")
 
 
-def test_a_mesh_file_is_opened_by_its_up_axis_and_scale_which_a_store_gives_itself(tmp_path: Path) -> None:
+def test_a_mesh_file_is_opened_by_its_up_axis_and_scale(tmp_path: Path) -> None:
     (tmp_path / "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 3 0\nf 1 2 3\n")
     with open_tables(tmp_path / "one.obj", up="y", scale=0.5) as tables:
         assert tables.select("SELECT max(z) AS top FROM nodes") == [{"top": 1.5}]
-    with pytest.raises(UsageError, match="scale is for mesh files"):
-        open_tables(small_store(tmp_path), scale=2.0)
 
 
 def test_a_row_is_changed_by_its_key_and_saved_at_once(tmp_path: Path, tables: Tables) -> None:
@@ -54,29 +50,20 @@ def test_a_row_is_changed_by_its_key_and_saved_at_once(tmp_path: Path, tables: T
 
 
 SMALL = "small.sqlite: "
-NOT_ONE = "a statement must be one that SQLite can run, and this one is not"
-NO_CHANGE = "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another"
+NOT_ONE = (
+    "a statement must be one SELECT or, with --write, one INSERT, UPDATE or DELETE that SQLite can run, and"
+    " this one is not"
+)
 
 WRONG_CHANGES: dict[str, Callable[[Tables], object]] = {
     "there is no table 'light'; did you mean 'lights'?": lambda tables: tables.update("light", "key", on=1),
     "there is no row of lights with name 'kye'; did you mean 'key'?": (
         lambda tables: tables.update("lights", "kye", on=1)
     ),
-    f"{NOT_ONE} (no such column: intensty); correct it": (
-        lambda tables: tables.update("lights", "key", intensty=1)
-    ),
-    "an update must change a column, not none; give one as in intensity=2.0": (
-        lambda tables: tables.update("lights", "key")
-    ),
     f"{SMALL}lights, row 1: intensity must be a finite number of at least 0, not -1.0": (
         lambda tables: tables.update("lights", "key", intensity=-1)
     ),
-    f"{SMALL}polygons, row 2: node 5 is not in the node table; correct it": (
-        lambda tables: tables.change("DELETE FROM nodes WHERE node > 4")
-    ),
-    f"{NO_CHANGE} (not authorized); change the tables themselves with a tool of SQLite": (
-        lambda tables: tables.change("DROP TABLE lights")
-    ),
+    f"{NOT_ONE} (not authorized); correct it": (lambda tables: tables.change("DROP TABLE lights")),
 }
 
 
@@ -150,16 +137,6 @@ def test_a_change_is_made_to_the_store_as_it_is_now(tmp_path: Path, tables: Tabl
         open_tables(path)
 
 
-def test_a_scene_of_files_is_read_into_memory_and_written_by_its_user(tmp_path: Path) -> None:
-    folder = tmp_path / "small"
-    write_scene(folder, small_scene().replace(mesh=small_scene().mesh.with_scalars()))
-    with open_tables(folder) as tables:
-        tables.update("lights", "rim", intensity=0.5)
-        assert read_scene(folder).light("rim").intensity == 1.0
-        autocolor.write_scene(folder, tables.scene(), overwrite=True)
-    assert read_scene(folder).light("rim").intensity == 0.5
-
-
 ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT "
 
 
@@ -181,18 +158,9 @@ test_a_wrong_statement_is_told_in_a_sentence_with_what_to_do = refused(
         ("SELECT * FROM light", f"{NOT_ONE} (no such table: light); correct it"),
         ("SELECT 1; SELECT 2", f"{NOT_ONE} (You can only execute one statement at a time.); correct it"),
         (
-            "SELECT '\udcff'",
-            f"{NOT_ONE} ('utf-8' codec can't encode character '\\udcff' in position 8:"
-            " surrogates not allowed); correct it",
-        ),
-        (
             "DELETE FROM lights",
             "a statement must only read the tables, and this one changes lights; allow changes with --write"
             " (tables.change in Python), or write a SELECT",
-        ),
-        (
-            "PRAGMA journal_mode = OFF",
-            f"{NO_CHANGE} (not authorized); change the tables themselves with a tool of SQLite",
         ),
         ("SELECT length(zeroblob(1000000000))", TOO_BIG),
         (f"{ENDLESS} i FROM n WHERE i < 0", LATE),
@@ -209,11 +177,3 @@ def test_rows_come_a_few_at_a_time_as_they_are_asked_for(tables: Tables) -> None
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 20_000_000
-
-
-def test_values_that_a_statement_computes_are_short_enough_to_be_searched_at_once(tables: Tables) -> None:
-    query = "SELECT length(replace(hex(zeroblob(?)), '0', 'a')) AS n"
-    half = LONGEST_COMPUTED // 2
-    assert tables.select(query, [half - 500]) == [{"n": LONGEST_COMPUTED - 1000}]
-    with pytest.raises(UsageError, match="string or blob too big"):
-        tables.select(query, [half + 1])

@@ -150,7 +150,7 @@ def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paint
         assert isinstance(field, SwatchField)
         seen += [color_of_paint(hand, number) for number in range(len(field.words))]
         hand.pick("page")
-    assert seen == [paints.color(number) for number in range(len(paints))]
+    assert seen == [*paints.colors]
     # The last page has the swatches.
     assert color_of_paint(hand, 0) == tuple(swatches()[0])
     assert hand.scene is scene

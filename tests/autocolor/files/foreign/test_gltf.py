@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from autocolor.files.foreign.gltf_document import completed, document, size_of_gltf
 from autocolor.files.formats import read_mesh
-from autocolor.files.meshes.foreign import FOREIGN, read_in_own_process
-from autocolor.files.meshes.gltf_document import completed, document, size_of_gltf
 from autocolor.files.meshes.repair import MeshReport, Placement
-from tests.autocolor.files.meshes.conftest import CUBE, SIDES, area_and_volume
+from tests.autocolor.files.foreign.conftest import CUBE, SIDES, area_and_volume
 from tests.autocolor.files.refusals import refusal, refused
 
 pytestmark = [pytest.mark.needs("vtkmodules"), pytest.mark.usefixtures("shared")]
@@ -166,30 +165,29 @@ def test_morph_targets_are_applied_with_their_weights(tmp_path: Path) -> None:
     assert area_and_volume(file.read(tmp_path))[1] == 1 + 5
 
 
-@pytest.mark.parametrize("with_matrices", [True, False])
-def test_skins_move_nodes_by_the_weights_of_their_joints(tmp_path: Path, with_matrices: bool) -> None:
+def test_skins_move_nodes_by_the_weights_of_their_joints(tmp_path: Path) -> None:
     chance = np.random.default_rng(4)
     joints = chance.integers(0, 2, (8, 4)).astype("u1")
     weights = chance.dirichlet(np.ones(4), 8).astype("f4")
     file = Gltf()
     file.attributes |= {"JOINTS_0": file.array(joints), "WEIGHTS_0": file.array(weights)}
-    moves, bound = np.array([[2.0, 0, 0], [0, 3, 1]]), np.zeros((2, 3))
+    moves, bound = np.array([[2.0, 0, 0], [0, 3, 1]]), np.array([[-1.0, 0, 0], [0, -2, 0]])
     one, other = ({"translation": move.tolist()} for move in moves)
     file.node |= {"skin": 0, "translation": [100, 0, 0]}
     file.json["nodes"] += [{**one, "children": [2]}, other]
     file.json["scenes"] = [{"nodes": [0, 1]}]
-    file.json["skins"] = [{"joints": [1, 2]}]
-    if with_matrices:
-        bound = np.array([[-1.0, 0, 0], [0, -2, 0]])
-        matrices = np.tile(np.eye(4, dtype="f4"), (2, 1, 1))
-        matrices[:, 3, :3] = bound
-        file.json["skins"][0]["inverseBindMatrices"] = file.array(matrices)
+    matrices = np.tile(np.eye(4, dtype="f4"), (2, 1, 1))
+    matrices[:, 3, :3] = bound
+    file.json["skins"] = [{"joints": [1, 2], "inverseBindMatrices": file.array(matrices)}]
     of_joints = np.cumsum(moves, axis=0) + bound
     expected = CUBE + np.einsum("nj,njk->nk", weights, of_joints[joints])
     assert np.allclose(np.roll(file.read(tmp_path).mesh.coordinates, 1, axis=1), expected, atol=1e-4)
     file.json["skins"][0]["joints"] = [1]
     number = file.attributes["JOINTS_0"]
     sentence = f"a.gltf: accessors {number}: joints must be of their skin, which has 1{END}"
+    assert refusal(file.read, tmp_path) == sentence
+    del file.json["skins"][0]["inverseBindMatrices"]
+    sentence = f"a.gltf: skins 0: it must have inverse bind matrices{END}"
     assert refusal(file.read, tmp_path) == sentence
 
 
@@ -206,12 +204,10 @@ def test_nodes_at_one_place_are_one_and_what_is_left_out_is_told(tmp_path: Path)
     file.json |= {"animations": [{}], "cameras": [{}, {}]}
     report = file.read(tmp_path)
     assert len(report.mesh.coordinates) == 8
-    (gltf,) = (each for each in FOREIGN if each.name == "glTF")
-    polygons = read_in_own_process(gltf, tmp_path / "a.gltf", 1).polygons
-    assert polygons.normals is not None
-    assert polygons.corner_normals is not None
-    at_corners = (polygons.coordinates[polygons.corners] - 0.5) / math.sqrt(0.75)
-    assert np.allclose(polygons.normals[polygons.corner_normals], at_corners)
+    mesh = read_mesh({"file": tmp_path / "a.gltf"}, Placement("x", normals="file")).mesh
+    assert mesh.own_normals is not None
+    at_corners = (mesh.coordinates[mesh.node_numbers] - 0.5) / math.sqrt(0.75)
+    assert np.allclose(mesh.own_normals.vectors[mesh.own_normals.numbers], at_corners)
     assert report.repairs == (
         "a.gltf: left out its animations, attributes of its own, cameras, colors of nodes and lights",
     )
@@ -235,35 +231,26 @@ DRACO = "KHR_draco_mesh_compression"
             for path, name, value in (
                 ("extensionsRequired", "X_new", ["X_new"]),
                 (f"{PRIMITIVE}.extensions", DRACO, {DRACO: {}}),
-                ("bufferViews.0.extensions", "EXT_meshopt_compression", {"EXT_meshopt_compression": {}}),
-                ("nodes.0.extensions", "EXT_mesh_gpu_instancing", {"EXT_mesh_gpu_instancing": {}}),
             )
         ),
         ("accessors.0.count", 90, WITHIN.format(90)),
-        ("bufferViews.0.byteLength", 95, WITHIN.format(8)),
         ("bufferViews.0.byteOffset", -4,
-         f"bufferViews 0: byteOffset must be a whole number of at least 0, not -4{END}"),
-        ("bufferViews.0.buffer", 1, f"bufferViews 0: it must be within its buffer{END}"),
-        ("accessors.0.type", "VEC9", f"accessors 0: its type must be one of glTF, not 'VEC9' of 5126{END}"),
+         f"bufferViews 0: it must be within its buffer{END}"),
         ("accessors.0.count", 7, VTK.format("Invalid index in primitive")),
         (f"{PRIMITIVE}.mode", 1,
          f"its scene must have meshes of triangles; skipped primitives of points or lines: 1{END}"),
-        ("nodes.0.mesh", 5, VTK.format("Invalid mesh index 5")),
-        ("nodes.0.children", [0], f"VTK must read it, and crashed (code -11){END}"),
-        ("accessors.0.bufferView", 9,
-         f"its JSON must describe a scene as glTF 2.0 does, and is damaged{END}"),
+        ("nodes.0.children", [0], f"VTK must give a whole mesh, and does not (it crashed (code -11)){END}"),
+        ("accessors.0.bufferView", -1,
+         VTK.format("it is cut short or damaged, or has what VTK does not know")),
         (f"{PRIMITIVE}.attributes.JOINTS_1", 0,
          f"meshes 0: a node of a skin must have four joints at most{END}"),
-        ("nodes", [{}], f"its scene must have meshes of triangles{END}"),
         ("buffers", [{"byteLength": 168}],
          f"buffers 0: it must have the 168 bytes that the file says, not 0{END}"),
         *(
             ("buffers", [{"uri": uri}], f"buffers 0: it must be {told}")
             for uri, told in (
-                ("http://x", "the name of a file, not the address 'http://x'; fetch it and name the file"),
-                ("%2e%2e/a", "the name of a file in the scene's folder, not '../a'; copy the file there"),
-                (7, "the name of a file, not ''; correct it"),
-                ("b%20c", "in its folder, where there is no file 'b c'; copy it there"),
+                ("http://x", "the name of a file in the scene's folder, not 'http://x'; copy the file there"),
+                ("b%20c", "in its folder, and is not there; copy it there"),
             )
         ),
     ],
@@ -290,7 +277,7 @@ def glb(version: int = 2, length: int = 22, size: int = 2, kind: bytes = b"JSON"
     return struct.pack("<4sIII4s", b"glTF", version, length, size, kind) + b"[]"
 
 
-NO_JSON = "a.gltf: a glTF file must describe its scene in JSON, not {}; write it again"
+NO_JSON = "a.gltf: a glTF file must describe its scene in JSON ({}); write it again"
 CUT = (
     "a.gltf: a binary glTF file must have version 2, its own length and a chunk of JSON first; the file is"
     " cut short or damaged"
@@ -303,7 +290,6 @@ test_what_is_no_scene_is_refused = refused(
         *(
             (data, CUT)
             for data in (
-                glb()[:19],
                 glb()[:20],
                 glb(version=1),
                 glb(kind=b"BIN\0"),

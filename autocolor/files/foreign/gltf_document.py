@@ -10,9 +10,9 @@ from __future__ import annotations
 import binascii
 import json
 import math
-import os
 import re
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import unquote, unquote_to_bytes
@@ -22,7 +22,7 @@ import numpy as np
 from autocolor.arrays import AnyArray
 from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.files.meshes.foreign_mesh import ForeignRefusal
+from autocolor.files.foreign.mesh import ForeignRefusal
 from autocolor.files.paths import path_within
 from autocolor.files.reading import bounded_json, read_whole, status_of
 
@@ -36,7 +36,7 @@ def document(path: Path) -> tuple[Row, bytes]:
     """The JSON of a glTF file, and the binary chunk of a GLB file. Raises InputError if either is damaged."""
     data, binary = read_whole(path, 1), b""
     if data.startswith(b"glTF"):
-        # A GLB file begins with its version, its length, and a chunk of JSON with its size.
+        # Its version, its length, and a chunk of JSON with its size.
         version, length, size, kind = struct.unpack_from("<III4s", data.ljust(20, b"\0"), 4)
         binary = data[28 + size : length]
         if version != 2 or kind != b"JSON" or length > len(data) or size > len(data) - 20:
@@ -49,33 +49,29 @@ def document(path: Path) -> tuple[Row, bytes]:
         described = bounded_json(data, MOST_VALUES)
         if not isinstance(described, dict):
             raise ValueError(f"a {type(described).__name__}")
+        return described, binary
     except ValueError as error:
         reason = " ".join(str(error).split())[:100]
         raise InputError(
-            f"{path.name}: a glTF file must describe its scene in JSON, not {reason}; write it again"
+            f"{path.name}: a glTF file must describe its scene in JSON ({reason}); write it again"
         ) from None
-    return described, binary
 
 
-def buffer_files(path: Path, described: Row) -> list[Path | None]:
+def buffer_files(path: Path, described: Row) -> Iterator[Path | None]:
     """The files of the buffers, in the folder of a glTF file; None for buffers within the file.
 
     Raises InputError for an address, a file outside of the folder, or a file that is not there.
     """
-    files: list[Path | None] = []
     for number, row in enumerate(rows(described, "buffers")):
-        uri = row.get("uri")
-        if uri is None or (isinstance(uri, str) and uri[:5].lower() == "data:"):
-            files.append(None)
-            continue
-        reasons: list[str] = []
-        named = path_within(reasons, path.parent, unquote(uri) if isinstance(uri, str) else "")
-        if named is not None and not named.is_file():
-            reasons.append(f"must be in its folder, where there is no file {named.name!r}; copy it there")
-        if reasons:
-            raise InputError(f"{path.name}: buffers {number}: it {reasons[0]}")
-        files.append(named)
-    return files
+        uri, reasons = row.get("uri"), list[str]()
+        if uri is None or str(uri)[:5].lower() == "data:":
+            yield None
+        else:
+            named = path_within(reasons, path.parent, unquote(str(uri)))
+            if named is None or not named.is_file():
+                reasons.append("must be in its folder, and is not there; copy it there")
+                raise InputError(f"{path.name}: buffers {number}: it {reasons[0]}")
+            yield named
 
 
 def rows(row: Row, key: str) -> list[Row]:
@@ -87,8 +83,8 @@ def rows(row: Row, key: str) -> list[Row]:
 def size_of_gltf(path: Path) -> int:
     """The bytes of a glTF file and of the buffers in its folder. Raises InputError."""
     described, _ = document(path)
-    files = buffer_files(path, described)
-    return status_of(path).st_size + sum(os.stat(each).st_size for each in files if each is not None)
+    files = [path, *filter(None, buffer_files(path, described))]
+    return sum(status_of(each).st_size for each in files)
 
 
 # Extensions. Most concern materials and textures, which are left out.
@@ -129,45 +125,36 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
     Each accessor has a view of its own, so that VTK finds no offsets, strides or sparse values, which it
     leaves out at times.
     """
-    buffers, views, joined = list[bytes](), list[tuple[memoryview, int]](), bytearray()
-    for number, (row, named) in enumerate(
-        zip(rows(described, "buffers"), buffer_files(path, described), strict=True)
-    ):
-        uri = row.get("uri")
+    buffers, views = dict[int, bytes](), dict[int, tuple[memoryview, int]]()
+    for number, named in enumerate(buffer_files(path, described)):
+        row = described["buffers"][number]
+        uri, least = row.get("uri"), row["byteLength"]
         data = binary if uri is None else _data_of(uri) if named is None else read_whole(named, 1)
-        least = whole(row, "byteLength", f"buffers {number}")
         if len(data) < least:
             raise ForeignRefusal(
                 f"buffers {number}: it must have the {least:,} bytes that the file says, not {len(data):,}"
             )
-        buffers.append(data[:least])
+        buffers[number] = data[:least]
     for number, view in enumerate(rows(described, "bufferViews")):
-        place = f"bufferViews {number}"
-        buffer, offset = whole(view, "buffer", place), whole(view, "byteOffset", place, 0)
-        data = buffers[buffer] if buffer < len(buffers) else b""
-        end = offset + whole(view, "byteLength", place)
-        if end > len(data):
-            raise ForeignRefusal(f"{place}: it must be within its buffer")
-        views.append((memoryview(data)[offset:end], whole(view, "byteStride", place, 0)))
-    described["bufferViews"], arrays = [], list[AnyArray]()
-
-    def put(row: Row, values: AnyArray) -> None:
-        row |= {"bufferView": len(arrays), "byteOffset": 0}
+        data, offset = buffers.get(view["buffer"], b""), view.get("byteOffset", 0)
+        end = offset + view["byteLength"]
+        if not 0 <= offset <= end <= len(data):
+            raise ForeignRefusal(f"bufferViews {number}: it must be within its buffer")
+        views[number] = memoryview(data)[offset:end], view.get("byteStride", 0)
+    accessors, joined = rows(described, "accessors"), bytearray()
+    arrays = [_values_of(row, views, f"accessors {number}") for number, row in enumerate(accessors)]
+    described["bufferViews"] = []
+    for number, (row, values) in enumerate(zip(accessors, arrays, strict=True)):
+        row |= {"bufferView": number, "byteOffset": 0}
         described["bufferViews"].append({"buffer": 0, "byteOffset": len(joined), "byteLength": values.nbytes})
-        joined.extend(values.tobytes() + bytes(-values.nbytes % 4))
-        arrays.append(values)
-
-    for number, row in enumerate(rows(described, "accessors")):
-        put(row, _values_of(row, views, f"accessors {number}"))
+        joined += values.tobytes() + bytes(-values.nbytes % 4)
     skins, meshes = rows(described, "skins"), rows(described, "meshes")
-    for skin in skins:
-        if "inverseBindMatrices" not in skin:
-            skin["inverseBindMatrices"], count = len(arrays), len(skin["joints"])
-            described["accessors"].append({"componentType": FLOAT, "type": "MAT4", "count": count})
-            put(described["accessors"][-1], np.tile(np.eye(4, dtype="<f4"), (count, 1, 1)))
     for node in rows(described, "nodes"):
         if "skin" in node and "mesh" in node:
-            count = len(skins[node["skin"]]["joints"])
+            skin = skins[node["skin"]]
+            if "inverseBindMatrices" not in skin:
+                raise ForeignRefusal(f"skins {node['skin']}: it must have inverse bind matrices")
+            count = min(len(skin["joints"]), len(arrays[skin["inverseBindMatrices"]]))
             for primitive in rows(meshes[node["mesh"]], "primitives"):
                 joints = primitive["attributes"].get("JOINTS_0")
                 if joints is not None and (arrays[joints] >= count).any():
@@ -177,10 +164,6 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
         # VTK warns of rounded unit quaternions.
         if length := math.hypot(*node.get("rotation", ())):
             node["rotation"] = [each / length for each in node["rotation"]]
-    if "scenes" not in described:
-        below = {child for node in rows(described, "nodes") for child in node.get("children", ())}
-        roots = [number for number in range(len(rows(described, "nodes"))) if number not in below]
-        described["scenes"] = [{"nodes": roots}]
     described["buffers"] = [{"byteLength": len(joined)}]
     for key in ("extensionsRequired", "extensionsUsed", "images", "textures", "animations", "cameras"):
         described.pop(key, None)
@@ -191,49 +174,32 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
     return head + text + struct.pack("<I4s", len(joined), b"BIN\0") + joined
 
 
-def _values_of(row: Row, views: list[tuple[memoryview, int]], place: str) -> AnyArray:
+def _values_of(row: Row, views: dict[int, tuple[memoryview, int]], place: str) -> AnyArray:
     """The values of an accessor, (count, columns), which must be within its view. Raises ForeignRefusal.
 
     Vectors of whole numbers that are not normalized, which VTK refuses, become floats.
     """
 
     def read(part: Row, length: int, columns: int, type_: np.dtype[Any]) -> AnyArray:
-        data, stride = views[whole(part, "bufferView", place)]
-        offset, size = whole(part, "byteOffset", place, 0), columns * type_.itemsize
+        data, stride = views[part["bufferView"]]
+        offset, size = part.get("byteOffset", 0), columns * type_.itemsize
         stride = stride or size
         if length and offset + stride * (length - 1) + size > len(data):
             raise ForeignRefusal(f"{place}: its {length:,} values must be within its view")
         return np.ndarray((length, columns), type_, data, offset, (stride, type_.itemsize)).copy()
 
-    count, dtype = whole(row, "count", place), np.dtype(TYPES.get(row.get("componentType", 0), "V0"))
-    width = WIDTHS.get(row.get("type", ""), 0)
-    if not width * dtype.itemsize:
-        raise ForeignRefusal(
-            f"{place}: its type must be one of glTF, not {shown(row.get('type'))} of"
-            f" {shown(row.get('componentType'))}"
-        )
+    count, width, dtype = row["count"], WIDTHS[row["type"]], np.dtype(TYPES[row["componentType"]])
     values = read(row, count, width, dtype) if "bufferView" in row else np.zeros((count, width), dtype)
     if sparse := row.pop("sparse", None):
-        changed, indices = whole(sparse, "count", place), sparse["indices"]
-        at = read(indices, changed, 1, np.dtype(TYPES[indices["componentType"]]))[:, 0]
-        values[at] = read(sparse["values"], changed, width, dtype)
+        indices = sparse["indices"]
+        at = read(indices, sparse["count"], 1, np.dtype(TYPES[indices["componentType"]]))[:, 0]
+        values[at] = read(sparse["values"], sparse["count"], width, dtype)
     if width == 3 and dtype.kind != "f" and not row.get("normalized"):
         values, row["componentType"] = values.astype("<f4"), FLOAT
     return values
 
 
-def whole(row: Row, key: str, place: str, default: int | None = None) -> int:
-    """A whole number of at least 0 in a row. Raises ForeignRefusal."""
-    value = row.get(key, default)
-    if type(value) is not int or not 0 <= value < 1 << 40:
-        raise ForeignRefusal(f"{place}: {key} must be a whole number of at least 0, not {shown(value)}")
-    return value
-
-
 def _data_of(uri: str) -> bytes:
-    """The bytes within a data URI. Raises ForeignRefusal."""
+    """The bytes within a data URI. Raises ValueError."""
     head, _, text = uri.partition(",")
-    try:
-        return binascii.a2b_base64(unquote(text)) if head.endswith(";base64") else unquote_to_bytes(text)
-    except ValueError as error:
-        raise ForeignRefusal(f"the data of a buffer must be base64, not damaged ({error})") from None
+    return binascii.a2b_base64(unquote(text)) if head.endswith(";base64") else unquote_to_bytes(text)

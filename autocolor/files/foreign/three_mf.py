@@ -18,8 +18,8 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import Color, shown
-from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal, part_names_of, unreadable
-from autocolor.files.meshes.repair import RawPolygons, printable_name
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, PlacedPart, joined, unreadable
+from autocolor.files.meshes.repair import printable_name
 
 Mesh = tuple[Floats, Indices, list[tuple[str, Indices]]]
 """Nodes, (nodes, 3), triangles, (triangles, 3), and the rows of the triangles of each material."""
@@ -51,10 +51,9 @@ def read(path: Path, kind: str) -> ForeignMesh:
 
 def _mesh_of_build(model: Any, stem: str, sentences: list[str]) -> ForeignMesh:
     """All parts of the build; `stem` names objects without a name. Raises ForeignRefusal."""
-    skipped, colors = Counter[str](), dict[str, Color]()
+    skipped, colors, parts = Counter[str](), dict[str, Color](), list[PlacedPart]()
     meshes: dict[int, Mesh] = {}
-    nodes, triangles, part_names, materials = list[Floats](), list[Indices](), list[str](), list[str]()
-    count, items = 0, model.GetBuildItems()
+    items = model.GetBuildItems()
     while items.MoveNext():
         item = items.GetCurrent()
         above = _matrix(item.GetObjectTransform())
@@ -62,30 +61,19 @@ def _mesh_of_build(model: Any, stem: str, sentences: list[str]) -> ForeignMesh:
             number = handle.GetUniqueResourceID()
             if number not in meshes:
                 meshes[number] = _mesh(model, handle, shown(name), skipped, colors)
-            own_nodes, own_triangles, own_materials = meshes[number]
+            nodes, triangles, materials = meshes[number]
             if np.linalg.det(transform[:3, :3]) < 0:
                 # A reflection turns the triangles over.
-                own_triangles = own_triangles[:, ::-1]
-            for material, rows in own_materials:
-                triangles.append(count + own_triangles[rows])
-                part_names.append(f"{name} {material}" if material and len(own_materials) > 1 else name)
-                materials.append(material)
-            nodes.append(own_nodes @ transform[:3, :3] + transform[3, :3])
-            count += len(own_nodes)
+                triangles = triangles[:, ::-1]
+            nodes = nodes @ transform[:3, :3] + transform[3, :3]
+            for material, rows in materials:
+                own_name = f"{name} {material}" if material and len(materials) > 1 else name
+                parts.append(PlacedPart(own_name, material, nodes, triangles[rows]))
     sentences += [f"left out {what}: {number:,}" for what, number in skipped.items()]
-    if not triangles:
+    if not parts:
         reason = ", ".join(sentences) or "the build is empty"
         raise ForeignRefusal(f"the build must have an object with triangles, not none ({reason})")
-    corners, names = np.concatenate(triangles), part_names_of(part_names)
-    polygons = RawPolygons(
-        np.concatenate(nodes),
-        corners.ravel(),
-        np.full(len(corners), 3, np.intp),
-        np.repeat(np.arange(len(names)), [len(each) for each in triangles]),
-        names,
-    )
-    material_of_part = {part: each for part, each in zip(names, materials, strict=True) if each}
-    return ForeignMesh(polygons, tuple(sentences), material_of_part, colors)
+    return joined(parts, sentences, colors)
 
 
 def _placed(

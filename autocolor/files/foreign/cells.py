@@ -14,6 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot, runs
+from autocolor.files.foreign.mesh import ForeignRefusal
 
 FACES: Final = {
     "tetra": ((0, 2, 1, 1), (0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3)),
@@ -28,32 +29,14 @@ FACES: Final = {
         (3, 0, 4, 7),
     ),
 }
-"""The faces of each shape, outward if its base is counterclockwise as seen from its top; a triangle repeats
-its last corner."""
+"""The faces of each volume cell, outward if its base is counterclockwise as seen from its top. The base is
+the first face; a triangle repeats its last corner."""
 
-BASES: Final = {"tetra": 3, "pyramid": 4, "wedge": 3, "hexahedron": 4}
-"""The corners of the base of each shape, which come first; the others are its top."""
+CORNERS: Final = {"triangle": 3, "quad": 4, "tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
+"""The number of corners of each shape."""
 
-CORNERS: Final = {"tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
-
-
-@dataclass(frozen=True, eq=False)
-class Volumes:
-    """Volume cells of one shape of FACES: their corners, (cells, corners), and their rows in the file."""
-
-    shape: str
-    corners: Indices
-    cells: Indices
-
-    def faces(self, coordinates: Floats) -> Flats:
-        """All faces, turned outward."""
-        base, top = np.split(coordinates[self.corners], [BASES[self.shape]], axis=1)
-        up = (top.mean(axis=1) - base.mean(axis=1)).T
-        area = cross((base[:, 2] - base[:, 0]).T, (base[:, -1] - base[:, 1]).T)
-        tables = self.corners[:, np.array(FACES[self.shape])]
-        is_turned = dot(area, up) < 0
-        tables[is_turned] = tables[is_turned][..., [1, 0, 3, 2]]
-        return Flats.of(tables.reshape(-1, 4), np.repeat(self.cells, tables.shape[1]))
+Block = tuple[str, Indices, Indices]
+"""Cells of one shape of CORNERS: the shape, their corners, (cells, corners), and their rows in the file."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,33 +87,59 @@ class CellSurface(NamedTuple):
 
 
 def cell_surface(
-    coordinates: Floats, flats: Flats, volumes: Sequence[Volumes], polyhedra: Sequence[Flats] = ()
+    coordinates: Floats, blocks: Sequence[Block], flats: Sequence[Flats] = (), polyhedra: Sequence[Flats] = ()
 ) -> CellSurface:
-    """The surface of polygons and volume cells; `polyhedra` are the faces of others, turned outward.
+    """The surface of cells; `polyhedra` are the faces of other volume cells, turned outward.
 
     With volume cells, nodes that the surface does not use are left out, and its corners are rows of the
-    others.
+    others. Raises ForeignRefusal for a corner that is no node.
     """
-    faces = [*(each.faces(coordinates) for each in volumes), *polyhedra]
+    cells = [Flats.of(corners, rows) for _, corners, rows in blocks]
+    for each in (*cells, *flats, *polyhedra):
+        _require_nodes(each, len(coordinates))
+    flats = [*flats, *(each for each, block in zip(cells, blocks, strict=True) if block[0] not in FACES)]
+    faces = [*polyhedra, *(_outward(coordinates, *block) for block in blocks if block[0] in FACES)]
     count = sum(int(np.count_nonzero(np.bincount(each.cells))) for each in faces)
     if not count:
-        return CellSurface(flats, np.arange(len(coordinates)), ())
+        return CellSurface(Flats.joined(flats), np.arange(len(coordinates)), ())
     # Polygons with the same corners, in any order, have the same sum of random numbers.
     numbers = np.random.default_rng(0).integers(1 << 62, size=len(coordinates))
-    faces.append(Flats.joined([flats]))
+    faces.append(Flats.joined(flats))
     sums = [np.add.reduceat(numbers[each.corners], each.starts) for each in faces]
     groups = np.unique(np.concatenate(sums), return_inverse=True)[1].reshape(-1)
     *groups_of_faces, groups_of_flats = np.split(groups, np.cumsum([len(each) for each in sums])[:-1])
     owners = np.bincount(np.concatenate(groups_of_faces), minlength=int(groups.max()) + 1)
     is_face = owners[groups_of_flats] > 0
     outer = [each.chosen(owners[group] == 1) for each, group in zip(faces, groups_of_faces, strict=False)]
-    flats = Flats.joined([*outer, faces[-1].chosen(~is_face)])
-    nodes, corners = np.unique(flats.corners, return_inverse=True)
+    surface = Flats.joined([*outer, faces[-1].chosen(~is_face)])
+    nodes, corners = np.unique(surface.corners, return_inverse=True)
     sentences = surface_sentences(count, len(coordinates) - len(nodes))
     if number := int(is_face.sum()):
         sentences.append(f"left out polygons that are faces of volume cells: {number:,}")
-    surface = Flats(corners.reshape(-1), flats.corner_counts, flats.cells)
+    surface = Flats(corners.reshape(-1), surface.corner_counts, surface.cells)
     return CellSurface(surface, nodes, tuple(sentences))
+
+
+def _require_nodes(flats: Flats, count: int) -> None:
+    """Raise ForeignRefusal unless all corners are from 0 to below `count`."""
+    wrong = np.flatnonzero((flats.corners < 0) | (flats.corners >= count))
+    if len(wrong):
+        cell = np.repeat(flats.cells, flats.corner_counts)[wrong[0]] + 1
+        raise ForeignRefusal(
+            f"a cell must have nodes of the file, from 0 to {count - 1:,}, not {flats.corners[wrong[0]]}"
+            f" (cell {cell:,})"
+        )
+
+
+def _outward(coordinates: Floats, shape: str, table: Indices, cells: Indices) -> Flats:
+    """All faces of volume cells of a shape, turned outward."""
+    base, top = np.split(coordinates[table], [len({*FACES[shape][0]})], axis=1)
+    up = (top.mean(axis=1) - base.mean(axis=1)).T
+    area = cross((base[:, 2] - base[:, 0]).T, (base[:, -1] - base[:, 1]).T)
+    faces = table[:, np.array(FACES[shape])]
+    is_turned = dot(area, up) < 0
+    faces[is_turned] = faces[is_turned][..., [1, 0, 3, 2]]
+    return Flats.of(faces.reshape(-1, 4), np.repeat(cells, faces.shape[1]))
 
 
 def surface_sentences(cells: int, left: int) -> list[str]:

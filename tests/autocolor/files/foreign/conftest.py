@@ -11,16 +11,16 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from autocolor.files.meshes import foreign
 from autocolor.files.meshes.repair import MeshReport
 
 PROGRAM = """
-import importlib, json, os, sys, types
+import dataclasses, importlib, json, os, sys, types
 import numpy as np
 from autocolor.errors import InputError
-from autocolor.files.meshes import foreign_worker as worker
-from autocolor.files.meshes.foreign_mesh import ForeignMesh, ForeignRefusal
+from autocolor.files.foreign import worker
+from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal
 from autocolor.files.meshes.repair import RawPolygons
+from autocolor.scene.scalar import MeshScalar
 
 def read(path, kind):
     polygons = RawPolygons(np.eye(3), np.arange(3), np.array([3]), np.array([0]), ("p",))
@@ -28,14 +28,14 @@ def read(path, kind):
     exec(path.read_text(), globals() | names, names)
     return names["mesh"]
 
-fake = types.ModuleType("autocolor.files.meshes.foreign_fake")
+fake = types.ModuleType("autocolor.files.foreign.fake")
 fake.read = read
 sys.modules[fake.__name__] = fake
 if sys.argv[1:]:
     sys.exit(worker.main(sys.argv[1:]))
 for line in sys.stdin:
     arguments = json.loads(line)
-    importlib.import_module("autocolor.files.meshes.foreign_" + arguments[1])
+    importlib.import_module("autocolor.files.foreign." + arguments[1])
     child = os.fork()
     if child == 0:
         os.dup2(os.open(os.devnull, os.O_RDWR), 1)
@@ -65,13 +65,13 @@ def worker() -> Iterator[subprocess.Popen[str]]:
 def shared(worker: subprocess.Popen[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """Files are read by forks of one process."""
 
-    def exit_code(command: tuple[str, ...], seconds: float) -> int:
+    def exit_code(command: tuple[str, ...], **options: object) -> int:
         assert worker.stdin is not None
         assert worker.stdout is not None
-        print(json.dumps(command[-7:]), file=worker.stdin, flush=True)
+        print(json.dumps(command[-8:]), file=worker.stdin, flush=True)
         return int(worker.stdout.readline())
 
-    monkeypatch.setattr(foreign, "_exit_code", exit_code)
+    monkeypatch.setattr(subprocess, "call", exit_code)
 
 
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1.0)])

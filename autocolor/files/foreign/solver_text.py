@@ -8,21 +8,20 @@ from __future__ import annotations
 
 import io
 import re
-from collections import Counter
-from collections.abc import Callable, Iterator
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
+from autocolor.arrays import Floats, Indices
 from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.files.meshes.cells import CORNERS
-from autocolor.files.meshes.foreign_mesh import ForeignRefusal
+from autocolor.files.foreign.cells import CORNERS
+from autocolor.files.foreign.mesh import ForeignRefusal
 from autocolor.files.paths import path_within
 from autocolor.files.reading import opened
-
-CORNERS_OF: Final = {"triangle": 3, "quad": 4, **CORNERS}
-"""The number of corners of each shape."""
-
 
 Record = tuple[str, str, str, list[str]]
 """A node or an element of a text: its place, kind, name and words.
@@ -31,22 +30,62 @@ A "node" has its number and coordinates as words. An element has its shape as it
 and the numbers of its nodes, corners first; without faces, it is "skipped", and its name is its type.
 """
 
-INCLUDE: Final = {
-    "abaqus": re.compile(r"\s*\*\s*include\s*,\s*input\s*=(.*)", re.I),
-    "nastran": re.compile(r"\s*include\s+(.*)", re.I),
-}
+Elements = tuple[str, Indices, list[str]]
+"""Elements of one shape: the shape, the rows of their nodes, (elements, nodes), and the part of each."""
+
+
+def assembled(records: Iterable[Record], skipped: Counter[str]) -> tuple[Floats, Iterable[Elements]]:
+    """The nodes, (nodes, 3), and the elements of a text; those without faces are counted in `skipped`.
+
+    Raises ForeignRefusal.
+    """
+    nodes, parts = dict[int, list[float]](), defaultdict[tuple[str, int], list[str]](list)
+    elements = defaultdict[tuple[str, int], list[list[int]]](list)
+    for place, kind, name, words in records:
+        try:
+            if kind == "skipped":
+                skipped[f"elements of type {name}"] += 1
+            elif kind == "node":
+                nodes[int(words[0])] = [_number(word) for word in [*words[1:], "", "", ""][:3]]
+            else:
+                elements[kind, len(words)].append([int(word) for word in words])
+                parts[kind, len(words)].append(name)
+        except ValueError as error:
+            raise ForeignRefusal(f"nodes and elements must be given by numbers ({place}: {error})") from None
+    row_of = {number: row for row, number in enumerate(nodes)}
+    try:
+        blocks = [
+            (key[0], np.array([[row_of[node] for node in each] for each in numbers]), parts[key])
+            for key, numbers in elements.items()
+        ]
+    except KeyError as error:
+        raise ForeignRefusal(f"elements must have nodes of the file, and there is no node {error}") from None
+    return np.array([*nodes.values()]).reshape(-1, 3), blocks
+
+
+def _number(word: str) -> float:
+    """A real number, whose exponent may be written as in FORTRAN: 1.5D3 or 1.5-3. Raises ValueError."""
+    try:
+        return float(word or 0)
+    except ValueError:
+        return float(re.sub(r"(?<=[\d.])(?=[-+])|D", "E", word.upper()))
+
+
+# Texts that include others.
+
+INCLUDE: Final = re.compile(r"\s*(?:\*\s*include\s*,\s*input\s*=|include\s)(.*)", re.I)
 
 MOST_FILES: Final = 100
 """Limit: files that a text includes, and that these include; a file may include itself."""
 
 
-def size_of_text(kind: str) -> Callable[[Path], int]:
-    """A function that gives the letters of a text of INCLUDE and of the files that it includes."""
-    return lambda path: sum(len(line) + 1 for _, line in _lines(path, kind, []))
+def size_of_text(path: Path) -> int:
+    """The letters of a text and of the files that it includes. Raises InputError."""
+    return sum(len(line) + 1 for _, line in _lines(path, []))
 
 
-def _lines(path: Path, kind: str, files: list[Path]) -> Iterator[tuple[str, str]]:
-    """The places and lines of a text of INCLUDE, and of the files that it includes, added to `files`.
+def _lines(path: Path, files: list[Path]) -> Iterator[tuple[str, str]]:
+    """The places and lines of a text, and of the files that it includes, added to `files`.
 
     Raises InputError for an included file that is not in the folder of the first file.
     """
@@ -56,13 +95,12 @@ def _lines(path: Path, kind: str, files: list[Path]) -> Iterator[tuple[str, str]
         raise InputError(f"{main.name}: it must include at most {MOST_FILES} files, not more; join them")
     with opened(path) as (file, _), io.TextIOWrapper(file, "utf-8-sig", "replace") as lines:
         for number, line in enumerate(lines, 1):
-            place = f"line {number}" if path == main else f"{path.name}, line {number}"
-            if match := INCLUDE[kind].match(line):
-                problems: list[str] = []
+            place, problems = f"line {number}" if path == main else f"{path.name}, line {number}", list[str]()
+            if match := INCLUDE.match(line):
                 included = path_within(problems, main.parent, match[1].strip().strip("'\""))
                 if included is None:
                     raise InputError(f"{main.name}, {place}: an included file {problems[0]}")
-                yield from _lines(included, kind, files)
+                yield from _lines(included, files)
             else:
                 yield place, line.strip("\n")
 
@@ -85,24 +123,22 @@ TYPE: Final = re.compile(
 """Types of elements by shape; the number of nodes is matched."""
 
 
-def _keywords(path: Path) -> Iterator[tuple[str, str, dict[str, str], list[list[str]]]]:
-    """The place, name, parameters and rows of each keyword, without comments and empty lines."""
-    place, name, parameters, rows, continues = "", "", dict[str, str](), list[list[str]](), False
-    for here, line in _lines(path, "abaqus", []):
-        text = line.strip()
-        if not text or text.startswith("**"):
+def _keywords(path: Path) -> Iterator[tuple[str, list[str], list[list[str]]]]:
+    """The place, words and rows of each keyword, without comments and empty lines."""
+    place, keyword, rows = "", [""], list[list[str]]()
+    for here, line in _lines(path, []):
+        words = [word.strip() for word in line.split(",")]
+        if not line.strip() or line.lstrip().startswith("**"):
             continue
-        words = [word.strip() for word in text.split(",")]
-        if not text.startswith("*") and not continues:
+        if keyword[1:] and not keyword[-1] and not rows:
+            # The line before ended with a comma.
+            keyword[-1:] = words
+        elif words[0].startswith("*"):
+            yield place, keyword, rows
+            place, keyword, rows = here, words, []
+        else:
             rows.append(words)
-            continue
-        if not continues:
-            yield place, name, parameters, rows
-            place, name, parameters, rows = here, " ".join(words.pop(0)[1:].upper().split()), {}, []
-        pairs = [word.partition("=") for word in words]
-        parameters |= {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-        continues = text.endswith(",")
-    yield place, name, parameters, rows
+    yield place, keyword, rows
 
 
 def abaqus(path: Path) -> Iterator[Record]:
@@ -112,7 +148,9 @@ def abaqus(path: Path) -> Iterator[Record]:
     assembly itself are points of reference. Raises ForeignRefusal and InputError.
     """
     counts, in_assembly = Counter[str](), False
-    for place, name, parameters, rows in _keywords(path):
+    for place, words, rows in _keywords(path):
+        name, pairs = " ".join(words[0][1:].upper().split()), [word.partition("=") for word in words[1:]]
+        parameters = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
         keys = ("INPUT", "SYSTEM") if name in ("NODE", "ELEMENT") else ()
         maker = ", ".join([name, *(f"{key}=" for key in keys if key in parameters)])
         if GENERATING.fullmatch(maker) or (name == "SYSTEM" and rows):
@@ -166,7 +204,7 @@ CARD: Final = re.compile(
 def _cards(path: Path) -> Iterator[tuple[str, str, list[str]]]:
     """The place, name and fields of each card of a text: fields are free, or of 8 or 16 letters."""
     place, name, fields, mark, is_open = "", "", list[str](), "", False
-    for here, line in _lines(path, "nastran", []):
+    for here, line in _lines(path, []):
         text = line.split("$")[0].expandtabs(8).rstrip().upper()
         if text.startswith("ENDDATA"):
             is_open = False
@@ -213,5 +251,5 @@ def nastran(path: Path) -> Iterator[Record]:
         elif kind == "skipped":
             yield place, kind, name, []
         elif kind:
-            corners = [*fields[2:], *[""] * 8][: CORNERS_OF[kind]]
+            corners = [*fields[2:], *[""] * 8][: CORNERS[kind]]
             yield place, kind, f"part {fields[1] or fields[0]}", corners

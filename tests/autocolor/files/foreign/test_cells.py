@@ -5,10 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from autocolor.files.meshes.cells import BASES, CORNERS, CellSurface, Flats, Volumes, cell_surface
-from tests.autocolor.files.meshes.conftest import CUBE, SIDES
-
-NO_FLATS = Flats.joined([])
+from autocolor.files.foreign.cells import FACES, CellSurface, Flats, cell_surface
+from tests.autocolor.files.foreign.conftest import CUBE, SIDES
 
 NODES = np.array([*CUBE, (0.5, 0.5, 0.5), (0.5, 0.5, 2)])
 
@@ -17,10 +15,8 @@ CELLS = {
     "pyramid": [[*side[::-1], 8] for side in SIDES],
     "wedge": [[0, 1, 3, 4, 5, 7], [0, 3, 2, 4, 7, 6]],
     "hexahedron": [[0, 1, 3, 2, 4, 5, 7, 6]],
-}  # fmt: skip
+}
 """The unit cube, cut into cells of each shape; node 8 is its center."""
-
-TRIANGLES_AND_QUADS = {"tetra": (12, 0), "pyramid": (0, 6), "wedge": (4, 4), "hexahedron": (0, 6)}
 
 
 def volume_of(surface: CellSurface) -> float:
@@ -33,16 +29,16 @@ def volume_of(surface: CellSurface) -> float:
     return total
 
 
-@pytest.mark.parametrize("shape", CORNERS)
+@pytest.mark.parametrize("shape", FACES)
 @pytest.mark.parametrize("turned", [False, True])
 def test_a_cube_of_cells_of_each_shape_has_its_six_sides_and_its_volume(shape: str, turned: bool) -> None:
-    table, base = np.array(CELLS[shape]), BASES[shape]
+    table, base = np.array(CELLS[shape]), 3 if shape in ("tetra", "wedge") else 4
     if turned:
         # The corners of the base and of the top run the other way round.
         table = np.hstack([table[:, :base][:, ::-1], table[:, base:][:, ::-1]])
-    surface = cell_surface(NODES[:9], NO_FLATS, [Volumes(shape, table, np.arange(len(table)))])
-    counts = surface.flats.corner_counts
-    assert ((counts == 3).sum(), (counts == 4).sum()) == TRIANGLES_AND_QUADS[shape]
+    surface = cell_surface(NODES[:9], [(shape, table, np.arange(len(table)))])
+    triangles, quads = {"tetra": (12, 0), "wedge": (4, 4)}.get(shape, (0, 6))
+    assert sorted(surface.flats.corner_counts.tolist()) == [3] * triangles + [4] * quads
     assert volume_of(surface) == pytest.approx(1)
     assert surface.nodes.tolist() == list(range(8))
     assert surface.sentences == (
@@ -52,28 +48,16 @@ def test_a_cube_of_cells_of_each_shape_has_its_six_sides_and_its_volume(shape: s
 
 
 def test_cells_of_different_shapes_share_their_faces_and_polygons_that_are_faces_are_left_out() -> None:
-    several = [Flats.of(np.array([[2, 3, 1, 0], [0, 1, 9, 9]]), np.array([0, 1])),
-               Flats(np.array([0, 1, 3, 2, 9]), np.array([5]), np.array([2]))]  # fmt: skip
+    flats = [Flats(np.array([0, 1, 3, 2, 9]), np.array([5]), np.array([2]))]
+    polygons = ("quad", np.array([[2, 3, 1, 0], [0, 1, 9, 9]]), np.array([0, 1]))
     volumes = [
-        Volumes("hexahedron", np.array(CELLS["hexahedron"]), np.array([3])),
-        Volumes("pyramid", np.array([[4, 5, 7, 6, 9]]), np.array([4])),
+        ("hexahedron", np.array(CELLS["hexahedron"]), np.array([3])),
+        ("pyramid", np.array([[4, 5, 7, 6, 9]]), np.array([4])),
     ]
-    surface = cell_surface(NODES, Flats.joined(several), volumes)
+    surface = cell_surface(NODES, [polygons, *volumes], flats)
     assert surface.flats.corner_counts.tolist() == [3, 5, 4, 4, 4, 4, 4, 3, 3, 3, 3]
     assert surface.flats.cells.tolist() == [1, 2, *[3] * 5, *[4] * 4]
     assert surface.sentences[2] == "left out polygons that are faces of volume cells: 1"
-    assert volume_of(cell_surface(NODES, NO_FLATS, volumes)) == pytest.approx(1 + 1 / 3)
-    twice = Volumes("tetra", np.array([[0, 1, 3, 4], [1, 0, 3, 4]]), np.arange(2))
-    assert len(cell_surface(NODES, NO_FLATS, [twice]).flats.cells) == 0
-
-
-def test_polygons_of_several_lists_come_in_the_order_of_their_rows() -> None:
-    joined = Flats.joined(
-        [
-            Flats(np.array([5, 6, 7, 1, 2, 3, 4]), np.array([3, 0, 4]), np.array([4, 5, 0])),
-            Flats.of(np.array([[9, 8, 7, 7]]), np.array([2])),
-        ]
-    )
-    assert joined.corners.tolist() == [1, 2, 3, 4, 9, 8, 7, 5, 6, 7]
-    assert joined.corner_counts.tolist() == [4, 3, 3]
-    assert joined.cells.tolist() == [0, 2, 4]
+    assert volume_of(cell_surface(NODES, volumes)) == pytest.approx(1 + 1 / 3)
+    twice = ("tetra", np.array([[0, 1, 3, 4], [1, 0, 3, 4]]), np.arange(2))
+    assert len(cell_surface(NODES, [twice]).flats.cells) == 0
