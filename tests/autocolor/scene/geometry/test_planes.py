@@ -197,3 +197,17 @@ def test_a_wide_plane_is_found_in_a_chunk_and_among_small_polygons() -> None:
     shared = mesh.shared_planes
     assert shared is not None
     assert set(shared.plane_of_polygon.tolist()) == {0}
+
+
+def test_six_decimals_are_enough_for_small_things_at_the_origin_of_a_large_scene() -> None:
+    far = grid(1, 1, (9, 9, 9), (1, 0, 0), (0, 1, 0), "far")
+    turn, _ = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))
+    small = Mesh.joined([GROUND, DECAL])
+    shared = shared_by(moved(small, (small.coordinates @ turn * 0.1).round(6)), far)
+    assert shared is not None
+    assert shared.plane_of_polygon.tolist() == 10 * [0] + [-1]
+
+
+def test_a_poster_in_front_of_a_wall_keeps_its_depth_however_far_they_are_from_the_origin() -> None:
+    poster = shifted(DECAL, 0, -6e-5, 0)
+    assert shared_by(*(shifted(part, 500_000, 5_000_000, 0) for part in (poster, GROUND))) is None
