@@ -57,7 +57,10 @@ class Mesh(Immutable):
     polygons belong to the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp
     edge. The tables are copied and stored by columns (Fortran order), so that `.T` is the contiguous array
     that the renderer works on. `scalars` are numbers at the nodes or polygons. `own_normals` are the normals
-    of a file, which are used instead of computed ones. `Mesh.of` converts meshes of other programs.
+    of a file, which are used instead of computed ones.
+
+    `Mesh.of` converts meshes of other programs, and splits polygons of more than four sides and quads whose
+    sides cross, as files are split. The tables given here keep such quads, and not all of them are filled.
     """
 
     coordinates: Floats

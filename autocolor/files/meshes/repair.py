@@ -3,8 +3,10 @@
 - A corner that repeats the previous one is removed: a quad becomes a triangle.
 - A polygon with fewer than three corners left, or without area, is dropped.
 - A polygon with more than four corners is split into quads and triangles.
-- Warped, concave and crossed quads (bow-ties) are kept, since the renderer fills them scan line by scan line;
-  `scene.geometry.faults` finds them.
+- A polygon whose sides cross, such as a bow-tie or a pentagram, is split so that it is filled even-odd. Nodes
+  are added, after all nodes of the file, with scalars and normals between those at the ends of the side.
+- Warped and concave quads are kept, since the renderer fills them scan line by scan line; `scene.mesh_faults`
+  finds them.
 - A node that no polygon uses is dropped, with its scalars. Tables of nodes (CSV, npy, tables) keep theirs,
   because their rows have the user's own numbers.
 - With `Placement.normals` FILE, each corner that is left keeps the file's normal (see `file_normals`).
@@ -159,15 +161,28 @@ def repaired(
         owners = np.repeat(np.arange(len(counts)), counts)
         counts = np.bincount(owners[differs], minlength=len(counts))
         corners, normals = corners[differs], None if normals is None else normals[differs]
+    vectors, scalars = polygons.normals, polygons.scalars
     try:
         if normals is None:
-            node_numbers, owners = split_polygons(coordinates, corners, counts)
+            pieces = split_polygons(coordinates, corners, counts)
         else:
             # Split the corners themselves, so that each piece knows the normals at its corners.
-            pieces, owners = split_polygons(coordinates[corners], np.arange(len(corners)), counts)
-            node_numbers, normals = corners[pieces], normals[pieces]
+            pieces = split_polygons(coordinates[corners], np.arange(len(corners)), counts)
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
+    node_numbers, owners, added, crossed = pieces
+    if normals is not None:
+        if vectors is not None and len(crossed):
+            vectors = np.concatenate([vectors, added.between(vectors[normals])])
+            numbers = np.arange(-len(added.starts), 0) + len(vectors)
+            numbers[(normals[added.starts] < 0) | (normals[added.ends] < 0)] = -1
+            normals = np.append(normals, numbers)
+        added = added._replace(starts=corners[added.starts], ends=corners[added.ends])
+        corners = np.append(corners, np.arange(len(added.starts)) + len(coordinates))
+        node_numbers, normals = corners[node_numbers], normals[node_numbers]
+    if len(crossed):
+        coordinates = np.concatenate([coordinates, added.between(coordinates)])
+        scalars = tuple(added.with_scalar(each) for each in scalars)
 
     # Drop pieces without area.
     has_area = np.empty(len(node_numbers), np.bool_)
@@ -178,11 +193,14 @@ def repaired(
         normals = None if normals is None else normals[has_area]
     is_kept = np.zeros(len(counts), np.bool_)
     is_kept[owners] = True
+    is_crossed = np.zeros(len(counts), np.bool_)
+    is_crossed[crossed] = True
     kinds = {
         "polygon with repeated corners {} repaired": (counts < polygons.corner_counts) & is_kept,
         "polygon with fewer than three different corners {} dropped": counts < 3,
         "polygon without area {} dropped": (counts >= 3) & ~is_kept,
-        "polygon with more than four corners {} split": (counts > 4) & is_kept,
+        "polygon with more than four corners {} split": (counts > 4) & is_kept & ~is_crossed,
+        "polygon whose sides cross {} split": is_crossed & is_kept,
     }
     repairs += [_counted(sentence, count) for sentence, rows in kinds.items() if (count := int(rows.sum()))]
     if not len(node_numbers):
@@ -197,13 +215,13 @@ def repaired(
         coordinates = coordinates[rows_of[NODE]]
         node_numbers = (np.cumsum(is_used) - 1)[node_numbers]
     own_normals = None
-    if normals is not None and polygons.normals is not None:
-        vectors = turned_up(polygons.normals, placement.up)
+    if normals is not None and vectors is not None:
+        vectors = turned_up(vectors, placement.up)
         own_normals, sentences = file_normals(coordinates, node_numbers, vectors, normals)
         repairs.extend(sentences)
     # A piece of a polygon has the scalars of the whole.
     scalars = tuple(
-        MeshScalar(each.name, read_only(each.values[rows_of[each.of]]), each.of) for each in polygons.scalars
+        MeshScalar(each.name, read_only(each.values[rows_of[each.of]]), each.of) for each in scalars
     )
     mesh = Mesh(
         coordinates,

@@ -18,7 +18,7 @@ from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.immutable import read_only
 from autocolor.logs import logger_of
-from autocolor.scene.geometry.polygon_split import MOST_CORNERS, split_polygons
+from autocolor.scene.geometry.polygon_split import MOST_CORNERS, Pieces, crossed_quads, split_polygons
 from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
 
 LOG: Final = logger_of(__name__)
@@ -43,30 +43,53 @@ def foreign_tables(source: object, polygons: object = None) -> ForeignTables:
     in PyVista's PolyData; or `points` and `cells`, as in meshio. The latter two may have scalars. Raises
     InputError, and UsageError for anything else.
     """
-    if polygons is not None:
-        table, _ = _polygon_table(source, polygons)
-        return ForeignTables(source, table)
-    nodes, polygons = _nodes_and_polygons(source)
-    table, owners = _polygon_table(nodes, polygons)
-    cells = getattr(source, "cells", None)
-    blocks = _flat_blocks(cells) if isinstance(cells, (list, tuple)) else None
-    return ForeignTables(nodes, table, foreign_scalars(source, nodes, owners, blocks))
+    scalars: tuple[MeshScalar, ...] = ()
+    nodes = source
+    if polygons is None:
+        nodes, polygons = _nodes_and_polygons(source)
+        pieces = _pieces(nodes, polygons)
+        cells = getattr(source, "cells", None)
+        blocks = _flat_blocks(cells) if isinstance(cells, (list, tuple)) else None
+        scalars = foreign_scalars(source, nodes, pieces.owners, blocks)
+    else:
+        pieces = _pieces(nodes, polygons)
+    if len(pieces.crossed):
+        LOG.info("polygons whose sides cross that were split: %d", len(pieces.crossed))
+        coordinates = np.asarray(nodes, np.float64)
+        nodes = np.concatenate([coordinates, pieces.added.between(coordinates)])
+        scalars = tuple(pieces.added.with_scalar(each) for each in scalars)
+    return ForeignTables(nodes, pieces.corners, scalars)
 
 
-def _polygon_table(nodes: object, polygons: Any) -> tuple[AnyArray, Indices]:
-    """The polygon table, and the number of the source polygon of each row."""
+def _pieces(nodes: object, polygons: Any) -> Pieces:
+    """The polygons split into triangles and quads; a table of these is not checked."""
     try:
         table = np.asarray(polygons)
     except ValueError:
         # Its rows differ in length.
         table = np.empty(0)
     if table.ndim == 2 and len(table) and table.shape[1] in (3, 4):
-        return table, np.arange(len(table))
+        if table.shape[1] == 4 and _has_crossed_quads(nodes, table):
+            return _split(nodes, table.astype(np.intp).ravel(), np.full(len(table), 4))
+        return Pieces(table, np.arange(len(table)))
     rows = [_row(number, row) for number, row in enumerate(_iterated(polygons))]
     if not rows:
         raise InputError("a mesh must have polygons, not nodes alone; add some")
     counts = np.array([len(row) for row in rows], np.intp)
     return _split(nodes, np.concatenate(rows).astype(np.intp), counts)
+
+
+def _has_crossed_quads(nodes: object, table: AnyArray) -> bool:
+    """Whether a table of quads has any whose sides cross; False for tables that `Mesh` will refuse."""
+    try:
+        coordinates = np.asarray(nodes, np.float64)
+    except (TypeError, ValueError):
+        return False
+    if coordinates.ndim != 2 or coordinates.shape[1] != 3 or table.dtype.kind not in "iu":
+        return False
+    if table.min() < 0 or table.max() >= len(coordinates) or not np.isfinite(coordinates).all():
+        return False
+    return bool(crossed_quads(coordinates, table).any())
 
 
 def _nodes_and_polygons(source: Any) -> tuple[Any, Any]:
@@ -169,11 +192,8 @@ def _row(number: int, row: object) -> AnyArray:
     return corners
 
 
-def _split(nodes: object, corners: Indices, counts: Indices) -> tuple[Indices, Indices]:
-    """The polygon table of polygons with any number of corners, and the source polygon of each row.
-
-    Raises InputError.
-    """
+def _split(nodes: object, corners: Indices, counts: Indices) -> Pieces:
+    """The pieces of polygons with any number of corners. Raises InputError."""
     coordinates = np.asarray(nodes)
     if coordinates.ndim != 2 or coordinates.shape[1] != 3 or coordinates.dtype.kind not in "iuf":
         raise InputError(f"nodes must be numbers of shape (nodes, 3), not {coordinates.shape}; convert them")
@@ -184,10 +204,10 @@ def _split(nodes: object, corners: Indices, counts: Indices) -> tuple[Indices, I
             f"a node number must be a row of the nodes (0 to {len(coordinates) - 1}), not"
             f" {corners[outside[0]]} (row {row}); correct it"
         )
-    table, owners = split_polygons(coordinates.astype(np.float64), corners, counts)
+    pieces = split_polygons(coordinates.astype(np.float64), corners, counts)
     if split := int((counts > 4).sum()):
         LOG.info("polygons with more than four corners that were split: %d", split)
-    return table, owners
+    return pieces
 
 
 def foreign_scalars(

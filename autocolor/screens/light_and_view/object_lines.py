@@ -12,11 +12,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Singles, dot
+from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks, dot
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.defaults import framed
-from autocolor.scene.geometry.normals import edge_keys, places_of_corners
-from autocolor.scene.geometry.planes import ScaledPolygons
+from autocolor.scene.geometry.normals import edge_keys, places_of_corners, polygon_normals
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
@@ -144,6 +143,8 @@ Looked at on two cars in an area of 248 x 224: with 40 degrees, the crease angle
 car of one part are in pieces, and with 60 gone. A cylinder of 12 sides has no lines along it.
 """
 
+POLYGONS_AT_ONCE: Final = 1 << 13
+
 MOST_FEATURES: Final = 1 << 15
 """Assumed: a mesh with more features, such as a noisy scan, is drawn by its longest features alone."""
 
@@ -194,7 +195,9 @@ def mesh_edges(
     area have no edges.
     """
     parts, coordinate_rows, node_rows = mesh.part_numbers, mesh.coordinates.T, mesh.node_numbers.T
-    normals = ScaledPolygons(coordinate_rows, node_rows).normals(np.arange(node_rows.shape[1]))
+    normals = np.empty((3, node_rows.shape[1]))
+    for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
+        normals[:, chunk] = polygon_normals(np.take(coordinate_rows, node_rows[:, chunk], axis=1))
     has_edges = (normals != 0).any(axis=0)
     if part_numbers is not None:
         has_edges &= np.isin(parts, list(part_numbers))

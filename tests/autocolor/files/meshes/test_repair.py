@@ -93,11 +93,42 @@ def test_nodes_that_no_polygon_uses_are_dropped_with_their_scalars() -> None:
 
 
 def test_a_sound_mesh_is_left_alone_and_tables_keep_unused_nodes() -> None:
-    # The halves of the last quad, a bow-tie, cancel.
-    report = mesh_of([0, 1, 2, 3], [0, 1, 2], [0, 2, 1, 3])
+    report = mesh_of([0, 1, 2, 3], [0, 1, 2])
     assert report.repairs == ()
-    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 3], [0, 1, 2, 2], [0, 2, 1, 3]]
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 3], [0, 1, 2, 2]]
     assert report.mesh.coordinates.tolist() == SQUARE
+
+
+@pytest.mark.parametrize("own_normals", [False, True])
+def test_a_polygon_whose_sides_cross_is_split_at_added_nodes(own_normals: bool) -> None:
+    corners = np.array([0, 1, 2, 3, 0, 2, 1, 3])
+    polygons = RawPolygons(
+        np.array(SQUARE, np.float64),
+        corners,
+        np.array([4, 4]),
+        np.zeros(2, np.intp),
+        ("part",),
+        (
+            MeshScalar("x", np.array(SQUARE, np.float64)[:, 0]),
+            MeshScalar("row", np.array([7.0, 8.0]), "polygon"),
+        ),
+        normals=np.array([(0, 0, 1.0), (0, 0.6, 0.8)]) if own_normals else None,
+        corner_normals=(corners == 2).astype(np.intp) if own_normals else None,
+    )
+    placement = Placement(normals="file") if own_normals else Placement()
+    mesh, repairs = (report := repaired(polygons, "a.obj", placement, unused_nodes=True)).mesh, report.repairs
+    assert repairs == ("a.obj: 1 polygon whose sides cross was split",)
+    # The nodes of the file keep their numbers.
+    assert mesh.coordinates[: len(SQUARE)].tolist() == SQUARE
+    assert mesh.node_numbers[0].tolist() == [0, 1, 2, 3]
+    assert [0.5, 0.5, 0] in mesh.coordinates[len(SQUARE) :].tolist()
+    values, rows = (each.values for each in mesh.scalars)
+    assert values == pytest.approx(mesh.coordinates[:, 0])
+    assert rows.tolist() == [7, *[8] * (len(mesh.node_numbers) - 1)]
+    if own_normals:
+        at_crossing = mesh.node_numbers == mesh.coordinates.tolist().index([0.5, 0.5, 0])
+        between = mesh.normals.vectors[mesh.normals.numbers[at_crossing]]
+        assert between == pytest.approx(np.array([(0, 0.3, 0.9)] * len(between)) / 0.9**0.5)
 
 
 test_a_mesh_without_polygons_left_is_refused = refused(

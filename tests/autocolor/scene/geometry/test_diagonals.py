@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Mesh
+from autocolor import Mesh, View
 from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.geometry import diagonals as module
@@ -15,6 +15,7 @@ from autocolor.scene.geometry import polygon_split
 from autocolor.scene.geometry.diagonals import NO_DIAGONAL, quad_diagonals
 from autocolor.scene.geometry.polygon_split import clipped_ears, split_polygons
 from autocolor.testing import meshes
+from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.small import grid, sphere
 
 DART = [(0.0, 0.0, 0.0), (2.0, 5.0, 0.0), (4.0, 0.0, 0.0), (2.0, 1.0, 0.0)]
@@ -106,7 +107,7 @@ def test_triangles_and_quads_stay_whole_and_pieces_take_the_place_of_their_polyg
     turns = np.arange(6) * math.pi / 3
     points = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
     corners = [0, 1, 2, 5, 4, 0, 1, 2, 3, 4, 5, 5, 4, 3, 2]
-    pieces, owners = split_polygons(points, np.array(corners), np.array([3, 2, 6, 0, 4]))
+    pieces, owners, *_ = split_polygons(points, np.array(corners), np.array([3, 2, 6, 0, 4]))
     # A polygon of fewer than three corners has no piece.
     assert owners.tolist() == [0, 2, 2, 4]
     assert pieces[[0, 3]].tolist() == [[0, 1, 2, 2], [5, 4, 3, 2]]
@@ -116,7 +117,7 @@ def test_triangles_and_quads_stay_whole_and_pieces_take_the_place_of_their_polyg
 def test_a_convex_polygon_becomes_quads_and_at_most_one_triangle(count: int) -> None:
     turns = np.arange(count) * 2 * math.pi / count
     points = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
-    pieces, _ = split_polygons(points, np.arange(count), np.array([count]))
+    pieces, *_ = split_polygons(points, np.arange(count), np.array([count]))
     assert len(pieces) == (count - 1) // 2
     assert (pieces[:, 2] == pieces[:, 3]).sum() == count % 2
     assert sum(area(points, piece) for piece in pieces) == pytest.approx(area(points, range(count)))
@@ -131,7 +132,7 @@ def test_a_star_shaped_polygon_is_covered_once_in_any_plane(
 ) -> None:
     turns = np.arange(len(radii)) * 2 * math.pi / len(radii)
     points = np.stack([radii * np.cos(turns), radii * np.sin(turns), 0 * turns], axis=1)
-    pieces, _ = split_polygons(points[:, axes], np.arange(len(radii)), np.array([len(radii)]))
+    pieces, *_ = split_polygons(points[:, axes], np.arange(len(radii)), np.array([len(radii)]))
     areas = [area(points, piece) for piece in pieces]
     assert min(areas) >= -1e-9
     assert sum(areas) == pytest.approx(area(points, range(len(radii))))
@@ -143,7 +144,7 @@ def test_a_comb_of_many_short_teeth_is_covered_once(axes: tuple[int, int, int]) 
     teeth = [(number / 10, 0.5 if number % 2 else 0.1) for number in range(101)]
     outline = np.array([(0.0, 0.0), (10.0, 0.0), *reversed(teeth)])
     points = np.column_stack([outline, np.zeros(len(outline))])
-    pieces, _ = split_polygons(points[:, axes], np.arange(len(points)), np.array([len(points)]))
+    pieces, *_ = split_polygons(points[:, axes], np.arange(len(points)), np.array([len(points)]))
     areas = [area(points, piece) for piece in pieces]
     assert min(areas) >= -1e-9
     assert sum(areas) == pytest.approx(area(points, range(len(points))))
@@ -166,3 +167,66 @@ def test_clipping_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
         "there must be fewer polygons with reflex corners, not so many with 5 corners; split them into"
         " triangles"
     )
+
+
+TENTH = math.pi / 10
+PENTAGRAM = [(math.cos(8 * turn * TENTH), math.sin(8 * turn * TENTH)) for turn in range(5)]
+# The points of a regular pentagram of radius 1, without the pentagon between them.
+NOTCH = math.sin(TENTH) / math.cos(2 * TENTH)
+TIPS = 5 * NOTCH * math.sin(2 * TENTH) - 2.5 * NOTCH**2 * math.sin(4 * TENTH)
+
+CROSSED = [
+    ("a bow-tie that cancels", [(0, 0), (1, 1), (1, 0), (0, 1)], 1 / 2),
+    ("a bow-tie", [(0, 0), (1, 1), (1, 0), (0, 0.5)], 5 / 12),
+    ("a pentagram", PENTAGRAM, TIPS),
+    ("two rectangles that touch at a crossing", [(0, 0), (2, 0), (2, 2), (1, 2), (1, -1), (0, -1)], 3),
+]
+
+
+each_crossed = pytest.mark.parametrize(
+    ("outline", "filled"), [case[1:] for case in CROSSED], ids=[case[0] for case in CROSSED]
+)
+
+
+@each_crossed
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_polygon_whose_sides_cross_is_split_into_its_even_odd_regions(
+    outline: list[tuple[float, float]], filled: float, turned: bool
+) -> None:
+    points = np.array([(0.5, 9, 9), *((x, y, 0) for x, y in outline)])
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0] if turned else np.eye(3)
+    square, crossed = [0, 1, 2], range(1, len(points))
+    pieces, owners, added, rows = split_polygons(
+        points @ turn, np.array([*square, *crossed]), np.array([3, len(outline)])
+    )
+    assert rows.tolist() == [1]
+    assert pieces[owners == 0].tolist() == [[0, 1, 2, 2]]
+    flat = np.concatenate([points, added.between(points)])
+    assert flat[1:, 2] == pytest.approx(0)
+    areas = np.array([area(flat, piece) for piece in pieces[owners == 1]])
+    assert (areas > 0).all() or (areas < 0).all()
+    assert np.abs(areas).sum() / 2 == pytest.approx(filled)
+
+
+def test_sides_that_cross_too_often_are_refused() -> None:
+    turns = np.arange(301) * 300 * math.pi / 301
+    star = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
+    with pytest.raises(InputError) as caught:
+        split_polygons(star, np.arange(301), np.array([301]))
+    assert str(caught.value) == (
+        "the sides of a polygon must cross less often, not 44,849 times; split it into triangles"
+    )
+
+
+@pytest.mark.parametrize("interpolation", ["scan line", "invariant"])
+@each_crossed
+def test_a_polygon_whose_sides_cross_is_filled_even_odd_however_it_is_turned(
+    outline: list[tuple[float, float]], filled: float, interpolation: str
+) -> None:
+    nodes = [(x, y, 0.0) for x, y in outline]
+    mesh = Mesh.of(nodes, [list(range(len(nodes)))])
+    for angle in (10.0, 30.0, 75.0):
+        view = View((0.5, 0.5, 10.0), target=(0.5, 0.5, 0.0), field_of_view=24.0, angle=angle)
+        points = visible_surfaces(mesh, view, (1,), 480, 640, interpolation=interpolation)
+        pixel = 2 * 10 * math.tan(math.radians(12)) / 480
+        assert len(points.pixels) * pixel**2 == pytest.approx(filled, rel=0.01)

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, UsageError, render, scene_of
+from autocolor.scene.geometry.polygon_split import split_polygons
 from autocolor.scene.scalar import MeshScalar
 from tests.tables import refused
 
@@ -77,12 +78,24 @@ def test_a_polygon_of_more_than_four_sides_is_split_and_counted(
 
 @given(st.lists(st.lists(st.integers(0, 5), min_size=3, max_size=7), min_size=1, max_size=8))
 def test_every_side_of_a_polygon_is_a_side_of_a_piece(polygons: list[list[int]]) -> None:
+    counts = np.array([len(polygon) for polygon in polygons])
+    assume(not len(split_polygons(np.array(POINTS, np.float64), np.concatenate(polygons), counts).crossed))
     mesh = Mesh.of(POINTS, polygons)
     pieces = [list(dict.fromkeys(row)) if row[2] == row[3] else row for row in mesh.node_numbers.tolist()]
     sides = {frozenset(pair) for row in pieces for pair in zip(row, [*row[1:], row[0]], strict=True)}
     for polygon in polygons:
         for side in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
             assert frozenset(side) in sides or len(set(side)) == 1
+
+
+def test_quads_whose_sides_cross_are_split_in_any_source(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.INFO, "autocolor"):
+        heights = {"x": np.array(POINTS)[:, 0]}
+        mesh = Mesh.of(meshio(quad=np.array([[0, 1, 2, 3], [0, 2, 1, 3]]), point_data=heights))
+    assert "polygons whose sides cross that were split: 1" in caplog.messages
+    assert mesh.node_numbers[0].tolist() == [0, 1, 2, 3]
+    assert len(mesh.node_numbers) > 2
+    assert mesh.scalars[0].values == pytest.approx(mesh.coordinates[:, 0])
 
 
 def test_cells_that_are_no_polygons_are_left_out_in_a_sentence(caplog: pytest.LogCaptureFixture) -> None:
