@@ -23,7 +23,7 @@ from autocolor.arrays import components_of
 from autocolor.checks import Color, listed
 from autocolor.files.foreign.gltf_document import Row, completed, document, refuse_extensions, rows
 from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, PlacedPart, joined
-from autocolor.files.foreign.vtk import listening, places_of, refuse_printed, surface_of
+from autocolor.files.foreign.vtk import listening, places_of, surface_of
 from autocolor.files.meshes.repair import different, printable_name
 from autocolor.files.meshes.welding import welded
 
@@ -45,12 +45,12 @@ def read(path: Path, kind: str) -> ForeignMesh:
     sentences = _left_out(described)
     with tempfile.NamedTemporaryFile(suffix=".glb", delete=False) as file:
         file.write(completed(path, described, binary))
-    window, reader = listening(), vtkGLTFReader()
+    reader = vtkGLTFReader()
     reader.SetFileName(file.name)
     reader.ApplyDeformationsToGeometryOn()
     reader.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
-    reader.Update()
-    refuse_printed(window, path)
+    with listening(path):
+        reader.Update()
     names, colors = _materials(described)
     all_parts = list(_parts(reader.GetOutputDataObject(0), described, names, path.stem))
     parts = [part for part in all_parts if len(part.triangles)]
@@ -113,10 +113,6 @@ def _left_out(described: Row) -> list[str]:
     return [f"left out its {listed(found)}"] if found else []
 
 
-def _has_texture(value: object) -> bool:
-    return "Texture" in json.dumps(value)
-
-
 def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
     """The names of the materials, and the base colors of those that have no texture instead."""
     materials = rows(described, "materials")
@@ -126,7 +122,7 @@ def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
         shiny = (row.get("extensions") or {}).get("KHR_materials_pbrSpecularGlossiness") or {}
         rough = row.get("pbrMetallicRoughness") or {}
         color = rough.get("baseColorFactor") or shiny.get("diffuseFactor")
-        if color is not None or not _has_texture({**rough, **shiny}):
+        if color is not None or "Texture" not in json.dumps([rough, shiny]):
             linear = np.clip((color or (1.0, 1.0, 1.0))[:3], 0, 1)
             red, green, blue = components_of(linear).tolist()
             colors[name] = (red, green, blue)
