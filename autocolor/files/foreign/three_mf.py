@@ -95,8 +95,6 @@ def _placed(
 
 def _mesh(model: Any, handle: Any, name: str, skipped: Counter[str], colors: dict[str, Color]) -> Mesh:
     """The mesh of an object, whose colors are noted. Raises ForeignRefusal unless it is all triangles."""
-    if not handle.IsMeshObject():
-        raise ForeignRefusal(f"object {name} must be a mesh, not a level set")
     lattice = handle.BeamLattice()
     if lattice.GetBeamCount() or lattice.GetBallCount():
         raise ForeignRefusal(f"object {name} must have triangles only, not a beam lattice")

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from vtkmodules import vtkCommonDataModel as model
 from vtkmodules import vtkIOXML
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
@@ -47,10 +46,10 @@ HIDDEN: Final = vtkDataSetAttributes.HIDDENCELL
 
 
 def read(path: Path, kind: str) -> ForeignMesh:
-    """The surface of a VTK file of the kind "legacy" or "xml". Raises ForeignRefusal."""
+    """The surface of a VTK file of the kind "vtk" or "vtk xml". Raises ForeignRefusal."""
     sentences = list[str]()
     with listening(path):
-        data = _xml(path) if kind == "xml" else _legacy(path)
+        data = _xml(path) if kind == "vtk xml" else _legacy(path)
         # VTK prints of arrays that have other numbers of values than there are nodes or cells.
         data.CheckAttributes()
     if not data.GetNumberOfPoints() or not data.GetNumberOfCells():
@@ -189,8 +188,8 @@ def _cells(data: Any) -> tuple[Indices, Flats]:
     if data.IsA("vtkPolyData"):
         arrays = (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips())
         numbers, sizes = (np.concatenate(each) for each in zip(*map(_lists, arrays), strict=True))
-        kinds = [model.VTK_VERTEX, model.VTK_LINE, model.VTK_POLYGON, model.VTK_TRIANGLE_STRIP]
-        types = np.repeat(kinds, [each.GetNumberOfCells() for each in arrays])
+        # The types of vertices, lines, polygons and strips.
+        types = np.repeat([1, 3, 7, 6], [each.GetNumberOfCells() for each in arrays])
     else:
         numbers, sizes = _lists(data.GetCells())
         # The name of the array before VTK 9.6 is the second.
@@ -201,27 +200,28 @@ def _cells(data: Any) -> tuple[Indices, Flats]:
 def surface_of(data: Any, is_hidden: Booleans | bool = False) -> CellSurface:
     """The surface of polygonal data or an unstructured grid. Raises ForeignRefusal for strange cells."""
     types, cells = _cells(data)
-    types = np.where(is_hidden, model.VTK_EMPTY_CELL, types)
+    # Zero is the type of empty cells.
+    types = np.where(is_hidden, 0, types)
     blocks, flats, polyhedra, skipped = list[Block](), list[Flats](), list[Flats](), list[str]()
     for type_ in np.unique(types).tolist():
         rows, example = np.flatnonzero(types == type_), vtkGenericCell.InstantiateCell(type_)
-        if type_ == model.VTK_TRIANGLE_STRIP:
+        name = "" if example is None else example.GetClassName()
+        if name == "vtkTriangleStrip":
             flats.append(_triangles(cells.chosen(rows)))
-        elif type_ == model.VTK_POLYGON:
+        elif name == "vtkPolygon":
             flats.append(cells.chosen(rows))
-        elif type_ == model.VTK_POLYHEDRON:
+        elif name == "vtkPolyhedron":
             polyhedra.append(_faces(data, rows))
-        elif example is not None and example.GetCellDimension() < 2:
-            if type_ != model.VTK_EMPTY_CELL:
-                what = "lines" if example.GetCellDimension() else "vertices"
-                skipped.append(f"skipped {what}: {len(rows):,}")
-        elif example is not None and (shape := SHAPE_OF_EDGES.get(example.GetNumberOfEdges())):
+        elif name and example.GetCellDimension() < 2:
+            what = "lines" if example.GetCellDimension() else "vertices"
+            skipped += [f"skipped {what}: {len(rows):,}"] if type_ else []
+        elif name and (shape := SHAPE_OF_EDGES.get(example.GetNumberOfEdges())):
             count, sizes = CORNERS[shape], cells.corner_counts[rows]
             if min(sizes) < count or (example.IsLinear() and max(sizes) > count):
                 raise ForeignRefusal(f"all cells of the type {type_} must have {count} nodes")
             if not example.IsLinear():
                 skipped.append(f"took the corners alone of cells of the type {type_}: {len(rows):,}")
-            order = ALONG_AXES[:count] if type_ in (model.VTK_PIXEL, model.VTK_VOXEL) else range(count)
+            order = ALONG_AXES[:count] if name in ("vtkPixel", "vtkVoxel") else range(count)
             blocks.append((shape, cells.corners[cells.starts[rows, None] + np.array(order)], rows))
         else:
             raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")

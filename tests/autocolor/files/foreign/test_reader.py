@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from autocolor.budget import MEMORY, allowing
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.foreign import reader
-from autocolor.files.foreign.mesh import part_names_of, save
+from autocolor.files.foreign.mesh import save
 from autocolor.files.foreign.reader import (
     ForeignFormat,
     most_memory,
@@ -46,15 +46,10 @@ from tests.autocolor.files.foreign.test_solvers import (
 from tests.autocolor.files.foreign.test_vtk import TEXT
 from tests.autocolor.files.refusals import is_read_or_refused, refusal
 
-FAKE = ForeignFormat("Fake", (".fake",), "fake", "fake", "", 1)
+FAKE = ForeignFormat("Fake", (".fake",), "json", "fake", 1)
 END = "; correct the file, or write it as OBJ or PLY"
-CANNOT = "a.fake: fake must be able to read it, and cannot ({})" + END
-MUST = "a.fake: fake must give a whole mesh, and does not ({})" + END
-
-
-@pytest.fixture(autouse=True)
-def _fake(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(reader.LIBRARIES, "fake", ("json", ""))
+CANNOT = "a.fake: json must be able to read it, and cannot ({})" + END
+MUST = "a.fake: json must give a whole mesh, and does not ({})" + END
 
 
 def read(folder: Path, body: str) -> MeshReport:
@@ -89,7 +84,7 @@ def test_a_mesh_comes_back_and_what_a_library_prints_goes_nowhere(
     [
         ("raise ValueError('no\\nnodes')", CANNOT.format("no nodes")),
         ("raise KeyError('x')",
-         CANNOT.format("it is cut short or damaged, or has what fake does not know")),
+         CANNOT.format("it is cut short or damaged, or has what json does not know")),
         ("raise ForeignRefusal('a cell must be flat', 'bend it')", "a.fake: a cell must be flat; bend it"),
         ("import os; os.abort()", MUST.format("it crashed (code -6)")),
         ("mesh = [bytes(1 << 20) for _ in range(5000)]",
@@ -108,12 +103,8 @@ def test_a_library_may_fail_in_any_way_and_nothing_is_believed(
 
 @pytest.mark.parametrize(
     ("table", "values"),
-    [
-        ("", []), ("header", ["[]"]), ("coordinates", np.full((3, 3), np.nan)),
-        ("coordinates", np.zeros((4, 2))), ("node_numbers", [[0, 1, 2, -1]]),
-        ("part_numbers", [1]), ("normal_numbers", [[0, 0, 0, 9]]), ("normals", np.zeros((3, 3), np.float32)),
-        ("scalar_0", [1.0]),
-    ],
+    [("", []), ("header", ["[]"]), ("node_numbers", [[0, 1, 2, -1]]), ("normal_numbers", [[0, 0, 0, 9]]),
+     ("normals", np.zeros((3, 3), np.float32)), ("scalar_0", [1.0])],
 )  # fmt: skip
 def test_what_is_no_mesh_is_refused(
     tmp_path: Path, table: str, values: Any, monkeypatch: pytest.MonkeyPatch
@@ -133,14 +124,14 @@ def test_what_is_no_mesh_is_refused(
         return 0
 
     monkeypatch.setattr(subprocess, "call", call)
-    assert refusal(read, tmp_path, "").startswith("a.fake: fake must give a whole mesh, and does not (")
+    assert refusal(read, tmp_path, "").startswith("a.fake: json must give a whole mesh, and does not (")
 
 
 def test_a_library_that_hangs_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reader, "WORKER", OWN)
     monkeypatch.setattr(reader, "most_seconds", lambda size: 1)
     assert refusal(read, tmp_path, "import time; time.sleep(100)") == (
-        "a.fake: fake must read it within 1 seconds, for its size, and did not; write it as OBJ or PLY,"
+        "a.fake: json must read it within 1 seconds, for its size, and did not; write it as OBJ or PLY,"
         " or allow more with --limit (limit= in Python)"
     )
 
@@ -151,13 +142,6 @@ def test_limits_grow_with_the_size_of_the_file() -> None:
     assert most_memory(1 << 40) == (1 << 30) + MEMORY
     with allowing(3):
         assert (most_seconds(0), most_memory(1 << 40)) == (90, (1 << 30) + 3 * MEMORY)
-
-
-def test_names_of_parts_are_made_unique_and_printable() -> None:
-    assert part_names_of(["a", "a", "a 2", "", "b\0", "a"]) == ("a", "a 2", "a 2 2", "part", "b?", "a 3")
-
-
-# The formats.
 
 
 @pytest.mark.parametrize(
@@ -180,8 +164,6 @@ def test_a_missing_package_is_told_with_what_installs_it(
         f'{name}: to read {told} must be installed; run: pip install "autocolor[{extra}]"'
     )
 
-
-# Damage.
 
 TEXTS = {
     "a.vtk": ("vtkmodules", TEXT.decode()),

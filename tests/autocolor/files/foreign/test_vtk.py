@@ -86,9 +86,13 @@ SETS = {
     "rectilinear": (block("RECTILINEAR_GRID", 3, 4, 5), "vtr", (0, 52, 52, 24)),
     "flat": (FLAT, "vtp", (3, 2, 3.5, 0)),
     "hexahedron": (grid(HEXAHEDRON), "vtu", (0, 6, 6, 1)),
+    "tetra": (grid((10, [0, 2, 1, 4])), "vtu", (4, 0, 1.5 + np.sqrt(0.75), 1 / 6)),
     "voxel": (grid((11, [*range(8)])), "vtu", (0, 6, 6, 1)),
     "two wedges": (grid((13, [0, 1, 3, 4, 5, 7]), (13, [0, 2, 3, 4, 6, 7])), "vtu", (4, 4, 6, 1)),
-    "pyramid": (grid((14, [0, 1, 3, 2, 4])), "vtu", (4, 1, 2 + np.sqrt(2), 1 / 3)),
+    "pyramid on a cube": (
+        grid(HEXAHEDRON, (14, [4, 5, 7, 6, 8]), places=[*CUBE, (0.5, 0.5, 2)]),
+        "vtu", (4, 5, 5 + np.sqrt(5), 4 / 3),
+    ),
     "polyhedron": (grid(POLYHEDRON), "vtu", (0, 6, 6, 1)),
     "with its faces": (
         grid(HEXAHEDRON, *[(9, side) for side in SIDES[:2]], (5, [0, 1, 2])), "vtu", (1, 6, 6.5, 1)
@@ -218,8 +222,8 @@ CELLS = TEXT[: TEXT.index(b"POLYGONS")].replace(b"POLYDATA", b"UNSTRUCTURED_GRID
 END = "; correct the file, or write it as OBJ or PLY"
 CANNOT = "a.vtk: VTK must be able to read it, and cannot ({})" + END
 XML = (
-    "a.vtp: the type of a VTK XML file must be PolyData, UnstructuredGrid, StructuredGrid, RectilinearGrid or"
-    " ImageData, not {}; write its surface as .vtp"
+    "a.vtp: the type of a VTK XML file must be one of PolyData, UnstructuredGrid, StructuredGrid,"
+    " RectilinearGrid, ImageData; write its surface as .vtp"
 )
 DATA = "Error reading ascii data. Possible mismatch of datasize with declaration"
 
@@ -233,14 +237,14 @@ DATA = "Error reading ascii data. Possible mismatch of datasize with declaration
         ("a.vtk", TEXT + b"POINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2\n", CANNOT.format(DATA)),
         ("a.vtk", TEXT + b"WORDS 3\n", CANNOT.format("Unrecognized keyword: words")),
         ("a.vtk", CELLS + b"CELLS 1 7\n6 0 1 2 3 0 1\nCELL_TYPES 1\n12\n",
-         f"a.vtk: a cell of the type 12 must have 8 nodes, not 6{END}"),
+         f"a.vtk: all cells of the type 12 must have 8 nodes{END}"),
         ("a.vtk", CELLS + b"CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n41\n",
          f"a.vtk: a cell must be of a type with faces, not of the type 41{END}"),
         ("a.vtk", CELLS + b"CELLS 1 3\n2 0 1\nCELL_TYPES 1\n3\n",
          f"a.vtk: it must have polygons or volume cells; skipped lines: 1{END}"),
         ("a.vtk", TEXT[: TEXT.index(b"POLYGONS")],
          f"a.vtk: it must have nodes and cells, and has none{END}"),
-        ("a.vtp", b'<VTKFile type="vtkMultiBlockDataSet"/>', XML.format("'vtkMultiBlockDataSet'")),
+        ("a.vtp", b'<VTKFile type="vtkMultiBlockDataSet"/>', XML),
         ("a.vtp", b'<VTKFile type="PolyData">', CANNOT.replace(".vtk", ".vtp").format(
             "Error parsing XML in stream at line 1, column 25, byte index 25: no element found")),
     ],
