@@ -42,7 +42,9 @@ def read(path: Path, kind: str) -> ForeignMesh:
     """The parts of the default scene of a glTF file. Raises InputError and ForeignRefusal."""
     described, binary = document(path)
     refuse_extensions(described)
-    sentences = _left_out(described)
+    left_out = [kind for kind, key in LEFT_OUT.items() if re.search(key, json.dumps(described))]
+    left_out += ["other scenes"] * (len(rows(described, "scenes")) > 1)
+    sentences = [f"left out its {listed(left_out)}"] if left_out else []
     with tempfile.NamedTemporaryFile(suffix=".glb", delete=False) as file:
         file.write(completed(path, described, binary))
     reader = vtkGLTFReader()
@@ -103,14 +105,6 @@ def _is_mirrored(data: Any) -> bool:
     matrices = [data.GetArray(name) for name in ("globalTransform", "jointMatrix_0")]
     signs = [np.linalg.det(vtk_to_numpy(each).reshape(4, 4)[:3, :3]) for each in matrices if each is not None]
     return bool(np.prod(np.sign(signs)) < 0)
-
-
-def _left_out(described: Row) -> list[str]:
-    """A sentence about what the file has and a mesh does not."""
-    text = json.dumps(described)
-    found = [kind for kind, key in LEFT_OUT.items() if re.search(key, text)]
-    found += ["other scenes"] * (len(rows(described, "scenes")) > 1)
-    return [f"left out its {listed(found)}"] if found else []
 
 
 def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:

@@ -235,8 +235,6 @@ def nastran(path: Path) -> Iterator[Record]:
             raise ForeignRefusal(f"element type {shown(name)} is not known ({place})")
         if name == "GRID":
             yield place, "node", "", [fields[0], *fields[2:5]]
-        elif kind == "skipped":
-            yield place, kind, name, []
         elif kind:
-            corners = [*fields[2:], *[""] * 8][: CORNERS[kind]]
-            yield place, kind, f"part {fields[1] or fields[0]}", corners
+            part = name if kind == "skipped" else f"part {fields[1] or fields[0]}"
+            yield place, kind, part, [*fields[2:], *[""] * 8][: CORNERS.get(kind, 0)]
