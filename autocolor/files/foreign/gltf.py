@@ -86,7 +86,10 @@ def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) ->
                 raise ForeignRefusal(f"meshes {mesh}: a node of a skin must have four joints at most")
             material = materials[primitive["material"]] if "material" in primitive else ""
             triangles = surface_of(data).flats.corners.reshape(-1, 3)
-            if _is_mirrored(block.GetBlock(0).GetFieldData()):
+            matrices = map(block.GetBlock(0).GetFieldData().GetArray, ("globalTransform", "jointMatrix_0"))
+            places = [vtk_to_numpy(each).reshape(4, 4)[:3, :3] for each in matrices if each is not None]
+            if np.prod([np.sign(np.linalg.det(each)) for each in places]) < 0:
+                # The node of a mesh, or its skin, turns triangles over.
                 triangles = triangles[:, ::-1]
             coordinates, row_of = welded(places_of(data))
             normals = data.GetPointData().GetNormals()
@@ -98,13 +101,6 @@ def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) ->
                 # Morph targets need not move normals.
                 None if normals is None or any(weights) else vtk_to_numpy(normals)[triangles.ravel()],
             )
-
-
-def _is_mirrored(data: Any) -> bool:
-    """Whether the node of a mesh, or its skin, turns triangles over."""
-    matrices = [data.GetArray(name) for name in ("globalTransform", "jointMatrix_0")]
-    signs = [np.linalg.det(vtk_to_numpy(each).reshape(4, 4)[:3, :3]) for each in matrices if each is not None]
-    return bool(np.prod(np.sign(signs)) < 0)
 
 
 def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
@@ -125,5 +121,4 @@ def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
 
 def _name(row: Row) -> str:
     """The name of a row, printable; empty if it has none."""
-    name = row.get("name")
-    return printable_name(name) if isinstance(name, str) else ""
+    return printable_name(str(row.get("name") or ""))

@@ -7,7 +7,7 @@ An extension that may change the geometry is refused by its name.
 
 from __future__ import annotations
 
-import binascii
+import base64
 import json
 import math
 import re
@@ -15,7 +15,7 @@ import struct
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
-from urllib.parse import unquote, unquote_to_bytes
+from urllib.parse import unquote
 
 import numpy as np
 
@@ -25,9 +25,6 @@ from autocolor.errors import InputError
 from autocolor.files.foreign.mesh import ForeignRefusal
 from autocolor.files.paths import path_within
 from autocolor.files.reading import bounded_json, read_whole, status_of
-
-MOST_VALUES: Final = 2_000_000
-"""Limit: values in the JSON of a glTF file; numbers of meshes are in its buffers."""
 
 Row = dict[str, Any]
 
@@ -43,7 +40,8 @@ def document(path: Path) -> tuple[Row, bytes]:
             if version != 2 or kind != b"JSON" or max(length, 20 + size) > len(data):
                 raise ValueError("it has no version 2, or is cut short or damaged")
             data = data[20 : 20 + size]
-        described = bounded_json(data, MOST_VALUES)
+        # Numbers of meshes are in buffers, not in the JSON.
+        described = bounded_json(data, 2_000_000)
         if not isinstance(described, dict):
             raise ValueError(f"a {type(described).__name__}")
         return described, binary
@@ -118,7 +116,15 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
     leaves out at times.
     """
     files = zip(rows(described, "buffers"), buffer_files(path, described), strict=True)
-    data = (read_whole(named, 1) if named else _data_of(row.get("uri"), binary) for row, named in files)
+    data = (
+        read_whole(named, 1)
+        if named
+        # The bytes of a data URI that does not say that it is in base64 are missing.
+        else base64.b64decode(row["uri"].partition(";base64,")[2], validate=True)
+        if row.get("uri")
+        else binary
+        for row, named in files
+    )
     buffers, views = dict(enumerate(data)), dict(enumerate(rows(described, "bufferViews")))
     described["bufferViews"], joined, arrays = [], bytearray(), list[AnyArray]()
     for number, row in enumerate(rows(described, "accessors")):
@@ -175,11 +181,3 @@ def _values_of(row: Row, views: Mapping[int, Row], buffers: Mapping[int, bytes])
     if width == 3 and dtype.kind != "f" and not row.get("normalized"):
         values, row["componentType"] = values.astype("<f4"), FLOAT
     return values
-
-
-def _data_of(uri: str | None, binary: bytes) -> bytes:
-    """The bytes within a data URI, or of the binary chunk if there is none. Raises ValueError."""
-    if uri is None:
-        return binary
-    head, _, text = uri.partition(",")
-    return binascii.a2b_base64(unquote(text)) if head.endswith(";base64") else unquote_to_bytes(text)

@@ -183,8 +183,8 @@ def _lists(cells: Any) -> tuple[Indices, Indices]:
     return numbers, sizes if len(numbers) else np.zeros_like(sizes)
 
 
-def _cells(data: Any) -> tuple[Indices, Flats]:
-    """The types and the nodes of all cells. Raises ForeignRefusal."""
+def surface_of(data: Any, is_hidden: Booleans | bool = False) -> CellSurface:
+    """The surface of polygonal data or an unstructured grid. Raises ForeignRefusal for strange cells."""
     if data.IsA("vtkPolyData"):
         arrays = (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips())
         numbers, sizes = (np.concatenate(each) for each in zip(*map(_lists, arrays), strict=True))
@@ -194,12 +194,7 @@ def _cells(data: Any) -> tuple[Indices, Flats]:
         numbers, sizes = _lists(data.GetCells())
         # The name of the array before VTK 9.6 is the second.
         types = vtk_to_numpy(getattr(data, "GetCellTypesArray", data.GetCellTypes)()).astype(np.intp)
-    return types, Flats(numbers, sizes, np.arange(len(sizes)))
-
-
-def surface_of(data: Any, is_hidden: Booleans | bool = False) -> CellSurface:
-    """The surface of polygonal data or an unstructured grid. Raises ForeignRefusal for strange cells."""
-    types, cells = _cells(data)
+    cells = Flats(numbers, sizes, np.arange(len(sizes)))
     # Zero is the type of empty cells.
     types = np.where(is_hidden, 0, types)
     blocks, flats, polyhedra, skipped = list[Block](), list[Flats](), list[Flats](), list[str]()

@@ -232,7 +232,7 @@ DATA = "Error reading ascii data. Possible mismatch of datasize with declaration
     ("name", "data", "sentence"),
     [
         ("a.vtk", TEXT.replace(b" 2 3\n", b" 2 99\n"),
-         f"a.vtk: a cell must have nodes of the file, from 0 to 3, not 99 (cell 1){END}"),
+         f"a.vtk: cells must have nodes of the file, from 0 to 3, not 99{END}"),
         ("a.vtk", TEXT.replace(b"0 1 0\n", b"0 1\n"), CANNOT.format(DATA)),
         ("a.vtk", TEXT + b"POINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2\n", CANNOT.format(DATA)),
         ("a.vtk", TEXT + b"WORDS 3\n", CANNOT.format("Unrecognized keyword: words")),
