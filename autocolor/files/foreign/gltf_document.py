@@ -88,12 +88,11 @@ HARMLESS: Final = re.compile(
 )
 """Extensions without which the geometry is the same."""
 
-GEOMETRY: Final = ("scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins")
-
 
 def refuse_extensions(described: Row) -> None:
     """Raise ForeignRefusal for an extension that is required, or that geometry has, and is not harmless."""
-    geometry = json.dumps([described.get(key) for key in GEOMETRY])
+    keys = ("scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins")
+    geometry = json.dumps([described.get(key) for key in keys])
     required = map(str, described.get("extensionsRequired") or ())
     # Their names begin with that of a vendor.
     for name in (*required, *re.findall(r'"([A-Z]+_\w+)": {', geometry)):
@@ -115,17 +114,12 @@ def completed(path: Path, described: Row, binary: bytes) -> bytes:
     Each accessor has a view of its own, so that VTK finds no offsets, strides or sparse values, which it
     leaves out at times.
     """
-    files = zip(rows(described, "buffers"), buffer_files(path, described), strict=True)
-    data = (
-        read_whole(named, 1)
-        if named
-        # The bytes of a data URI that does not say that it is in base64 are missing.
-        else base64.b64decode(row["uri"].partition(";base64,")[2], validate=True)
-        if row.get("uri")
-        else binary
-        for row, named in files
-    )
-    buffers, views = dict(enumerate(data)), dict(enumerate(rows(described, "bufferViews")))
+    buffers, views = dict[int, bytes](), dict(enumerate(rows(described, "bufferViews")))
+    for number, named in enumerate(buffer_files(path, described)):
+        uri = str(described["buffers"][number].get("uri") or "")
+        # A data URI that does not say that it is in base64 has no bytes.
+        own = base64.b64decode(uri.partition(";base64,")[2], validate=True) if uri else binary
+        buffers[number] = read_whole(named, 1) if named else own
     described["bufferViews"], joined, arrays = [], bytearray(), list[AnyArray]()
     for number, row in enumerate(rows(described, "accessors")):
         try:

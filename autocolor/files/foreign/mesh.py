@@ -47,8 +47,8 @@ class ForeignMesh:
 class ForeignRefusal(Exception):  # noqa: N818
     """A file cannot be read as it is.
 
-    `reason` is the rule, what the file has instead, and the place: "a cell must have nodes of the file, from
-    0 to 5, not 99 (cell 1)". The message to the user is the file's name, the reason and the remedy.
+    `reason` is the rule, what the file has instead, and the place: "cells must have nodes of the file, from 0
+    to 5, not 99". The message to the user is the file's name, the reason and the remedy.
     """
 
     def __init__(self, reason: str, remedy: str = REMEDY) -> None:

@@ -75,7 +75,6 @@ class ForeignFormat:
 
 
 XML_SUFFIXES: Final = (".vtp", ".vtu", ".vts", ".vtr", ".vti")
-NASTRAN: Final = (".bdf", ".nas", ".fem")
 
 FOREIGN: Final = (
     ForeignFormat("VTK", (".vtk",), "VTK", "vtk", 10, re.compile(rb"(?i)# vtk datafile").match),
@@ -87,7 +86,7 @@ FOREIGN: Final = (
     ForeignFormat("3MF", (".3mf",), "lib3mf", "three_mf", 100, up="z"),
     ForeignFormat("Abaqus", (".inp",), "meshio", "solvers", 8, size_of=size_of_text),
     ForeignFormat("Gmsh", (".msh",), "meshio", "solvers", 8),
-    ForeignFormat("Nastran", NASTRAN, "meshio", "solvers", 8, size_of=size_of_text),
+    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "solvers", 8, size_of=size_of_text),
     ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "solvers", 8),
     ForeignFormat("UGRID", (".ugrid",), "meshio", "solvers", 8),
 )

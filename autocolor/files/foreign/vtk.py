@@ -42,8 +42,6 @@ SHAPE_OF_EDGES: Final = {3: "triangle", 4: "quad", 6: "tetra", 8: "pyramid", 9: 
 ALONG_AXES: Final = [0, 1, 3, 2, 4, 5, 7, 6]
 """The order in which the corners of a pixel or voxel go around it."""
 
-HIDDEN: Final = vtkDataSetAttributes.HIDDENCELL
-
 
 def read(path: Path, kind: str) -> ForeignMesh:
     """The surface of a VTK file of the kind "vtk" or "vtk xml". Raises ForeignRefusal."""
@@ -61,7 +59,7 @@ def read(path: Path, kind: str) -> ForeignMesh:
         with listening(path):
             data, is_turned = _outer(data, sentences)
         ghosts = _ghosts(data)
-    surface = surface_of(data, (ghosts & HIDDEN) != 0)
+    surface = surface_of(data, (ghosts & vtkDataSetAttributes.HIDDENCELL) != 0)
     sentences += surface.sentences
     flats = surface.flats.chosen(ghosts[surface.flats.cells] == 0)
     if not len(flats.cells):
@@ -85,7 +83,8 @@ def _ghosts(data: Any) -> AnyArray:
     """For each cell, whether it is elsewhere, too, or not shown; otherwise 0."""
     array = data.GetCellData().GetArray("vtkGhostType")
     ghosts: AnyArray = vtk_to_numpy(array) if array else np.zeros(data.GetNumberOfCells(), np.uint8)
-    return ghosts & (vtkDataSetAttributes.DUPLICATECELL | HIDDEN)
+    ghosts = ghosts & (vtkDataSetAttributes.DUPLICATECELL | vtkDataSetAttributes.HIDDENCELL)
+    return ghosts
 
 
 def _legacy(path: Path) -> Any:
@@ -208,8 +207,8 @@ def surface_of(data: Any, is_hidden: Booleans | bool = False) -> CellSurface:
         elif name == "vtkPolyhedron":
             polyhedra.append(_faces(data, rows))
         elif name and example.GetCellDimension() < 2:
-            what = "lines" if example.GetCellDimension() else "vertices"
-            skipped += [f"skipped {what}: {len(rows):,}"] if type_ else []
+            what = ("vertices", "lines")[example.GetCellDimension()]
+            skipped += [f"skipped {what}: {len(rows):,}"] * (type_ > 0)
         elif name and (shape := SHAPE_OF_EDGES.get(example.GetNumberOfEdges())):
             count, sizes = CORNERS[shape], cells.corner_counts[rows]
             if min(sizes) < count or (example.IsLinear() and max(sizes) > count):

@@ -53,10 +53,6 @@ class Gltf:
         self.json["accessors"].append({**row, "type": type_, "bufferView": view, **others})
         return len(self.json["accessors"]) - 1
 
-    def raised(self, height: float) -> int:
-        """The number of an accessor that moves the upper nodes up."""
-        return self.array((CUBE * [0, 0, height]).astype("f4"))
-
     @property
     def text(self) -> str:
         uri = "data:application/octet-stream;base64," + base64.b64encode(self.binary).decode()
@@ -114,8 +110,7 @@ def test_parts_of_one_mesh_are_named_by_their_materials(tmp_path: Path) -> None:
 
 def test_quantized_and_sparse_numbers_are_unpacked(tmp_path: Path) -> None:
     for kind, scale, normalized, side in (
-        ("i2", 32767, True, 1), ("u2", 65535, True, 1), ("i1", 127, True, 1), ("u1", 255, True, 1),
-        ("i2", 300, False, 300), ("u2", 40_000, False, 40_000), ("u1", 3, False, 3),
+        ("i2", 32767, True, 1), ("u1", 255, True, 1), ("u2", 40_000, False, 40_000), ("u1", 3, False, 3),
     ):  # fmt: skip
         file = Gltf()
         file.json["extensionsRequired"] = file.json["extensionsUsed"] = ["KHR_mesh_quantization"]
@@ -152,7 +147,9 @@ def test_strips_and_fans_are_triangles_and_points_and_lines_are_counted(tmp_path
 
 def test_morph_targets_are_applied_with_their_weights(tmp_path: Path) -> None:
     file = Gltf()
-    file.primitive["targets"] = [{"POSITION": file.raised(2)}, {"POSITION": file.raised(100)}]
+    file.primitive["targets"] = [
+        {"POSITION": file.array((CUBE * [0, 0, height]).astype("f4"))} for height in (2, 100)
+    ]
     file.json["nodes"].append({"mesh": 0, "weights": [2, 0]})
     file.json["scenes"][0]["nodes"] = [0, 1]
     file.mesh["weights"] = [0.5, 0]
@@ -211,8 +208,6 @@ def test_nodes_at_one_place_are_one_and_what_is_left_out_is_told(tmp_path: Path)
     )
 
 
-# What is refused.
-
 END = "; correct the file, or write it as OBJ or PLY"
 VTK = "VTK must be able to read it, and cannot ({})" + END
 EXTENSION = (
@@ -235,13 +230,8 @@ PRIMITIVE = "meshes.0.primitives.0"
         (f"{PRIMITIVE}.mode", 1,
          f"its scene must have meshes of triangles; skipped primitives of points or lines: 1{END}"),
         ("nodes.0.children", [0], f"VTK must give a whole mesh, and does not (it crashed (code -11)){END}"),
-        ("accessors.0.bufferView", -1,
-         VTK.format("it is cut short or damaged, or has what VTK does not know")),
         (f"{PRIMITIVE}.attributes.JOINTS_1", 0,
          f"meshes 0: a node of a skin must have four joints at most{END}"),
-        ("buffers", [{"uri": "http://x"}],
-         "buffers 0: it must be the name of a file in the scene's folder, not 'http://x'; copy the file"
-         " there"),
         ("buffers", [{"uri": "b%20c"}],
          "buffers 0: it must be in its folder, and is not there; copy it there"),
     ],
