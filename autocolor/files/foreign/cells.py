@@ -96,7 +96,10 @@ def cell_surface(
     """
     cells = [Flats.of(corners, rows) for _, corners, rows in blocks]
     for each in (*cells, *flats, *polyhedra):
-        _require_nodes(each, len(coordinates))
+        wrong = each.corners[(each.corners < 0) | (each.corners >= len(coordinates))]
+        if len(wrong):
+            most = len(coordinates) - 1
+            raise ForeignRefusal(f"cells must have nodes of the file, from 0 to {most:,}, not {wrong[0]}")
     flats = [*flats, *(each for each, block in zip(cells, blocks, strict=True) if block[0] not in FACES)]
     faces = [*polyhedra, *(_outward(coordinates, *block) for block in blocks if block[0] in FACES)]
     count = sum(int(np.count_nonzero(np.bincount(each.cells))) for each in faces)
@@ -118,17 +121,6 @@ def cell_surface(
         sentences.append(f"left out polygons that are faces of volume cells: {number:,}")
     surface = Flats(corners.reshape(-1), surface.corner_counts, surface.cells)
     return CellSurface(surface, nodes, tuple(sentences))
-
-
-def _require_nodes(flats: Flats, count: int) -> None:
-    """Raise ForeignRefusal unless all corners are from 0 to below `count`."""
-    wrong = np.flatnonzero((flats.corners < 0) | (flats.corners >= count))
-    if len(wrong):
-        cell = np.repeat(flats.cells, flats.corner_counts)[wrong[0]] + 1
-        raise ForeignRefusal(
-            f"a cell must have nodes of the file, from 0 to {count - 1:,}, not {flats.corners[wrong[0]]}"
-            f" (cell {cell:,})"
-        )
 
 
 def _outward(coordinates: Floats, shape: str, table: Indices, cells: Indices) -> Flats:

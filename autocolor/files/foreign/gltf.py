@@ -23,7 +23,7 @@ from autocolor.arrays import components_of
 from autocolor.checks import Color, listed
 from autocolor.files.foreign.gltf_document import Row, completed, document, refuse_extensions, rows
 from autocolor.files.foreign.mesh import ForeignMesh, ForeignRefusal, PlacedPart, joined
-from autocolor.files.foreign.vtk import listening, places_of, refuse_printed, surface_of
+from autocolor.files.foreign.vtk import listening, places_of, surface_of
 from autocolor.files.meshes.repair import different, printable_name
 from autocolor.files.meshes.welding import welded
 
@@ -42,15 +42,17 @@ def read(path: Path, kind: str) -> ForeignMesh:
     """The parts of the default scene of a glTF file. Raises InputError and ForeignRefusal."""
     described, binary = document(path)
     refuse_extensions(described)
-    sentences = _left_out(described)
+    left_out = [kind for kind, key in LEFT_OUT.items() if re.search(key, json.dumps(described))]
+    left_out += ["other scenes"] * (len(rows(described, "scenes")) > 1)
+    sentences = [f"left out its {listed(left_out)}"] if left_out else []
     with tempfile.NamedTemporaryFile(suffix=".glb", delete=False) as file:
         file.write(completed(path, described, binary))
-    window, reader = listening(), vtkGLTFReader()
+    reader = vtkGLTFReader()
     reader.SetFileName(file.name)
     reader.ApplyDeformationsToGeometryOn()
     reader.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
-    reader.Update()
-    refuse_printed(window, path)
+    with listening(path):
+        reader.Update()
     names, colors = _materials(described)
     all_parts = list(_parts(reader.GetOutputDataObject(0), described, names, path.stem))
     parts = [part for part in all_parts if len(part.triangles)]
@@ -84,7 +86,10 @@ def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) ->
                 raise ForeignRefusal(f"meshes {mesh}: a node of a skin must have four joints at most")
             material = materials[primitive["material"]] if "material" in primitive else ""
             triangles = surface_of(data).flats.corners.reshape(-1, 3)
-            if _is_mirrored(block.GetBlock(0).GetFieldData()):
+            matrices = map(block.GetBlock(0).GetFieldData().GetArray, ("globalTransform", "jointMatrix_0"))
+            places = [vtk_to_numpy(each).reshape(4, 4)[:3, :3] for each in matrices if each is not None]
+            if np.prod([np.sign(np.linalg.det(each)) for each in places]) < 0:
+                # The node of a mesh, or its skin, turns triangles over.
                 triangles = triangles[:, ::-1]
             coordinates, row_of = welded(places_of(data))
             normals = data.GetPointData().GetNormals()
@@ -98,25 +103,6 @@ def _parts(scene: Any, described: Row, materials: tuple[str, ...], stem: str) ->
             )
 
 
-def _is_mirrored(data: Any) -> bool:
-    """Whether the node of a mesh, or its skin, turns triangles over."""
-    matrices = [data.GetArray(name) for name in ("globalTransform", "jointMatrix_0")]
-    signs = [np.linalg.det(vtk_to_numpy(each).reshape(4, 4)[:3, :3]) for each in matrices if each is not None]
-    return bool(np.prod(np.sign(signs)) < 0)
-
-
-def _left_out(described: Row) -> list[str]:
-    """A sentence about what the file has and a mesh does not."""
-    text = json.dumps(described)
-    found = [kind for kind, key in LEFT_OUT.items() if re.search(key, text)]
-    found += ["other scenes"] * (len(rows(described, "scenes")) > 1)
-    return [f"left out its {listed(found)}"] if found else []
-
-
-def _has_texture(value: object) -> bool:
-    return "Texture" in json.dumps(value)
-
-
 def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
     """The names of the materials, and the base colors of those that have no texture instead."""
     materials = rows(described, "materials")
@@ -126,7 +112,7 @@ def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
         shiny = (row.get("extensions") or {}).get("KHR_materials_pbrSpecularGlossiness") or {}
         rough = row.get("pbrMetallicRoughness") or {}
         color = rough.get("baseColorFactor") or shiny.get("diffuseFactor")
-        if color is not None or not _has_texture({**rough, **shiny}):
+        if color is not None or "Texture" not in json.dumps([rough, shiny]):
             linear = np.clip((color or (1.0, 1.0, 1.0))[:3], 0, 1)
             red, green, blue = components_of(linear).tolist()
             colors[name] = (red, green, blue)
@@ -135,5 +121,4 @@ def _materials(described: Row) -> tuple[tuple[str, ...], dict[str, Color]]:
 
 def _name(row: Row) -> str:
     """The name of a row, printable; empty if it has none."""
-    name = row.get("name")
-    return printable_name(name) if isinstance(name, str) else ""
+    return printable_name(str(row.get("name") or ""))

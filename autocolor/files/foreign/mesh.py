@@ -7,7 +7,6 @@ Each of `vtk`, `gltf`, `three_mf` and `solvers` has a function
 from __future__ import annotations
 
 import dataclasses
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,8 +14,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices
+from autocolor.arrays import Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE, Color, printable, shown
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, mesh_of, read_array_file
 from autocolor.files.meshes.repair import (
     MeshReport,
     Placement,
@@ -25,11 +25,7 @@ from autocolor.files.meshes.repair import (
     printable_name,
     repaired,
 )
-from autocolor.immutable import read_only
 from autocolor.scene.defaults import created_surface
-from autocolor.scene.geometry.normals import NodeNormals
-from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalar import MeshScalar
 
 REMEDY: Final = "correct the file, or write it as OBJ or PLY"
 
@@ -51,8 +47,8 @@ class ForeignMesh:
 class ForeignRefusal(Exception):  # noqa: N818
     """A file cannot be read as it is.
 
-    `reason` is the rule, what the file has instead, and the place: "a cell must have nodes of the file, from
-    0 to 5, not 99 (cell 1)". The message to the user is the file's name, the reason and the remedy.
+    `reason` is the rule, what the file has instead, and the place: "cells must have nodes of the file, from 0
+    to 5, not 99". The message to the user is the file's name, the reason and the remedy.
     """
 
     def __init__(self, reason: str, remedy: str = REMEDY) -> None:
@@ -125,36 +121,24 @@ def report_of(mesh: ForeignMesh, name: str, placement: Placement) -> MeshReport:
     return dataclasses.replace(report, material_of_part=mesh.material_of_part, materials=materials)
 
 
-# The archive of numpy that a mesh comes back in.
-
-TABLES: Final = ("coordinates", "node_numbers", "part_numbers")
+RESULT: Final = ArrayFileKind("mesh of a library", REMEDY, ("autocolor mesh",), {})
+"""The file in which a mesh comes back."""
 
 
 def save(report: MeshReport, result: Path) -> None:
-    """Write a mesh as an archive."""
+    """Write a mesh to a file of arrays."""
     mesh = report.mesh
-    scalars = [(each.name, each.of) for each in mesh.scalars]
-    colors = [(each.name, each.paint.object_color) for each in report.materials]
-    materials = dict(report.material_of_part)
-    header = (mesh.part_names, mesh.crease_angle, scalars, report.repairs, materials, colors)
-    arrays: dict[str, AnyArray] = {name: getattr(mesh, name) for name in TABLES}
-    arrays |= {f"scalar_{number}": each.values for number, each in enumerate(mesh.scalars)}
-    if mesh.own_normals is not None:
-        arrays |= {"normals": mesh.own_normals.vectors, "normal_numbers": mesh.own_normals.numbers}
-    with open(result, "wb") as file:
-        np.savez(file, allow_pickle=False, header=np.array(json.dumps(header)), **arrays)
+    header = {
+        "names": (mesh.part_names, mesh.crease_angle, report.repairs, dict(report.material_of_part)),
+        "colors": [(each.name, *each.paint.object_color) for each in report.materials],
+    }
+    result.write_bytes(array_file_bytes(RESULT, mesh, header, {}))
 
 
 def loaded(result: Path) -> MeshReport:
-    """The mesh of an archive. Raises ValueError, KeyError and others if it is damaged or no sound mesh."""
-    with np.load(result, allow_pickle=False) as file:
-        arrays = dict(file)
-    names, angle, rows, repairs, materials, colors = json.loads(str(arrays["header"]))
-    nodes, polygons, parts = (read_only(arrays[name]) for name in TABLES)
-    scalars = [MeshScalar(name, read_only(arrays[f"scalar_{at}"]), of) for at, (name, of) in enumerate(rows)]
-    normals = None
-    if "normals" in arrays:
-        normals = NodeNormals(read_only(arrays["normals"]), read_only(arrays["normal_numbers"]))
-    mesh = Mesh(nodes, polygons, parts, tuple(names), angle, tuple(scalars), normals)
-    surfaces = tuple(created_surface(name, (red, green, blue)) for name, (red, green, blue) in colors)
+    """The mesh of a file of arrays. Raises InputError and others if it is damaged or no sound mesh."""
+    header, arrays = read_array_file(RESULT, result)
+    names, angle, repairs, materials = header["names"]
+    surfaces = tuple(created_surface(name, (red, green, blue)) for name, red, green, blue in header["colors"])
+    mesh = mesh_of(header, arrays, names, angle)
     return MeshReport(mesh, tuple(printable(each[:300]) for each in repairs), materials, surfaces)

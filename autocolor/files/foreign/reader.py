@@ -6,7 +6,7 @@
   (as in .b8.ugrid): meshio, of which these formats need no further package. They are the extra `meshes`.
 
 A library may hang, crash, print or eat memory without harm to this process. The other process
-(`worker`) writes the mesh as an archive of numpy, whose numbers are checked.
+(`worker`) writes the mesh as a file of arrays, which is checked.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,7 +28,6 @@ import autocolor.files
 from autocolor.budget import allowed_memory, validated_limit
 from autocolor.checks import printable
 from autocolor.errors import InputError, UnavailableError
-from autocolor.files.array_file import GROWTH
 from autocolor.files.foreign.gltf_document import size_of_gltf
 from autocolor.files.foreign.mesh import REMEDY, loaded
 from autocolor.files.foreign.solver_text import size_of_text
@@ -56,59 +54,41 @@ def most_memory(size: int) -> int:
     return (1 << 30) + int(min(60 * size * max(1, validated_limit(None)), allowed_memory()))
 
 
-def size_of_file(path: Path) -> int:
-    """The bytes of a file that names no others. Raises InputError if it is not regular."""
-    with opened(path) as (_, status):
-        return status.st_size
-
-
-LIBRARIES: Final = {
-    "VTK": ("vtkmodules", "vtk"),
-    "lib3mf": ("lib3mf", "meshes"),
-    "meshio": ("meshio", "meshes"),
-}
-"""The package to import for each library, and the extra that installs it."""
-
-
 @dataclass(frozen=True)
 class ForeignFormat:
     """A format that a library reads: its name, its suffixes, and the name of the library.
 
-    `module` and `kind` are what the worker calls the reader and the format. `growth` is how many times its
-    size a file takes, as measured. `begins` is whether first bytes may be those of a file, as in `Format`.
-    `size_of` gives the number of bytes to read, and checks which files the file names. `up` is the file's up
-    axis if the format says it.
+    `module` is what the worker calls the reader. `growth` is how many times its size a file takes, as
+    measured. `begins` is whether first bytes may be those of a file, as in `Format`. `size_of` gives the
+    number of bytes to read, and checks which files the file names. `up` is the file's up axis if the format
+    says it.
     """
 
     name: str
     suffixes: tuple[str, ...]
     library: str
     module: str
-    kind: str
     growth: float
     begins: Callable[[bytes], object] | None = None
-    size_of: Callable[[Path], int] = size_of_file
+    size_of: Callable[[Path], int] | None = None
     up: str = ""
 
 
 XML_SUFFIXES: Final = (".vtp", ".vtu", ".vts", ".vtr", ".vti")
-NASTRAN: Final = (".bdf", ".nas", ".fem")
 
 FOREIGN: Final = (
-    ForeignFormat("VTK", (".vtk",), "VTK", "vtk", "legacy", 10, re.compile(rb"(?i)# vtk datafile").match),
+    ForeignFormat("VTK", (".vtk",), "VTK", "vtk", 10, re.compile(rb"(?i)# vtk datafile").match),
+    ForeignFormat("VTK XML", XML_SUFFIXES, "VTK", "vtk", 15, re.compile(rb"(?s)\s*<(.*<)?VTKFile").match),
     ForeignFormat(
-        "VTK XML", XML_SUFFIXES, "VTK", "vtk", "xml", 15, re.compile(rb"(?s)\s*<(.*<)?VTKFile").match
-    ),
-    ForeignFormat(
-        "glTF", (".glb", ".gltf"), "VTK", "gltf", "", 12, re.compile(b"glTF").match, size_of_gltf, up="y"
+        "glTF", (".glb", ".gltf"), "VTK", "gltf", 12, re.compile(b"glTF").match, size_of_gltf, up="y"
     ),
     # It is packed.
-    ForeignFormat("3MF", (".3mf",), "lib3mf", "three_mf", "", 100, up="z"),
-    ForeignFormat("Abaqus", (".inp",), "meshio", "solvers", "abaqus", 8, size_of=size_of_text),
-    ForeignFormat("Gmsh", (".msh",), "meshio", "solvers", "gmsh", 8),
-    ForeignFormat("Nastran", NASTRAN, "meshio", "solvers", "nastran", 8, size_of=size_of_text),
-    ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "solvers", "medit", 8),
-    ForeignFormat("UGRID", (".ugrid",), "meshio", "solvers", "ugrid", 8),
+    ForeignFormat("3MF", (".3mf",), "lib3mf", "three_mf", 100, up="z"),
+    ForeignFormat("Abaqus", (".inp",), "meshio", "solvers", 8, size_of=size_of_text),
+    ForeignFormat("Gmsh", (".msh",), "meshio", "solvers", 8),
+    ForeignFormat("Nastran", (".bdf", ".nas", ".fem"), "meshio", "solvers", 8, size_of=size_of_text),
+    ForeignFormat("Medit", (".mesh", ".meshb"), "meshio", "solvers", 8),
+    ForeignFormat("UGRID", (".ugrid",), "meshio", "solvers", 8),
 )
 
 
@@ -117,8 +97,10 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
 
     Raises InputError, and UnavailableError if a package is missing.
     """
-    size, library, nowhere = read_as.size_of(path), read_as.library, subprocess.DEVNULL
-    package, extra = LIBRARIES[library]
+    with opened(path) as (_, status):
+        size = read_as.size_of(path) if read_as.size_of else status.st_size
+    library, nowhere = read_as.library, subprocess.DEVNULL
+    package, extra = ("vtkmodules", "vtk") if library == "VTK" else (library, "meshes")
     if importlib.util.find_spec(package) is None:
         raise UnavailableError(
             f"{path.name}: to read {read_as.name} files, the library {library} must be installed;"
@@ -133,15 +115,14 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
     one = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "VTK_SMP_MAX_THREADS"), "1")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **one}
     with tempfile.TemporaryDirectory(prefix="autocolor-") as folder:
-        result, file = Path(folder) / "mesh.npz", os.fspath(path.absolute())
+        result, file = Path(folder) / path.name, os.fspath(path.absolute())
         numbers = (str(size), str(validated_limit(None)), json.dumps(dataclasses.astuple(placement)))
         try:
             code = subprocess.call(
-                (*WORKER, library, read_as.module, read_as.kind, file, os.fspath(result), *numbers),
+                (*WORKER, library, read_as.module, read_as.name.lower(), file, os.fspath(result), *numbers),
                 stdin=nowhere, stdout=nowhere, stderr=nowhere, env=environment, timeout=seconds,
             )  # fmt: skip
             if code == 0:
-                require_size(path.name, result.stat().st_size, GROWTH)
                 return loaded(result)
             reason = f"it crashed (code {code})"
         except subprocess.TimeoutExpired:
@@ -149,7 +130,7 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
                 f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
                 " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
             ) from None
-        except (zipfile.BadZipFile, OSError, EOFError, ValueError, LookupError, TypeError) as error:
+        except (ValueError, LookupError, TypeError) as error:
             reason = str(error)[:300]
         sentence = f"{library} must give a whole mesh, and does not ({reason}); {REMEDY}"
         if code == FAILED and result.is_file():

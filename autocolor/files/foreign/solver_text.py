@@ -71,12 +71,7 @@ def _number(word: str) -> float:
         return float(re.sub(r"(?<=[\d.])(?=[-+])|D", "E", word.upper()))
 
 
-# Texts that include others.
-
 INCLUDE: Final = re.compile(r"\s*(?:\*\s*include\s*,\s*input\s*=|include\s)(.*)", re.I)
-
-MOST_FILES: Final = 100
-"""Limit: files that a text includes, and that these include; a file may include itself."""
 
 
 def size_of_text(path: Path) -> int:
@@ -91,8 +86,9 @@ def _lines(path: Path, files: list[Path]) -> Iterator[tuple[str, str]]:
     """
     files.append(path)
     main = files[0]
-    if len(files) > MOST_FILES:
-        raise InputError(f"{main.name}: it must include at most {MOST_FILES} files, not more; join them")
+    if len(files) > 100:
+        # A file may include itself.
+        raise InputError(f"{main.name}: it must include at most 100 files, not more; join them")
     with opened(path) as (file, _), io.TextIOWrapper(file, "utf-8-sig", "replace") as lines:
         for number, line in enumerate(lines, 1):
             place, problems = f"line {number}" if path == main else f"{path.name}, line {number}", list[str]()
@@ -105,10 +101,9 @@ def _lines(path: Path, files: list[Path]) -> Iterator[tuple[str, str]]:
                 yield place, line.strip("\n")
 
 
-# Abaqus: keywords with parameters, and rows of words.
-
 GENERATING: Final = re.compile(
-    "NGEN|NFILL|NCOPY|NMAP|ELGEN|ELCOPY|IMPORT|PARAMETER|SYMMETRIC MODEL GENERATION|.*="
+    r"\*(?:NGEN|NFILL|NCOPY|NMAP|ELGEN|ELCOPY|IMPORT|PARAMETER|SYMMETRIC MODEL GENERATION)(?:,|$)"
+    r"|\*(?:NODE|ELEMENT),.*\b(?:INPUT|SYSTEM) *="
 )
 """Keywords that make or move nodes and elements."""
 
@@ -151,10 +146,11 @@ def abaqus(path: Path) -> Iterator[Record]:
     for place, words, rows in _keywords(path):
         name, pairs = " ".join(words[0][1:].upper().split()), [word.partition("=") for word in words[1:]]
         parameters = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-        keys = ("INPUT", "SYSTEM") if name in ("NODE", "ELEMENT") else ()
-        maker = ", ".join([name, *(f"{key}=" for key in keys if key in parameters)])
-        if GENERATING.fullmatch(maker) or (name == "SYSTEM" and rows):
-            raise ForeignRefusal(f"nodes and elements must be written out, not made by *{maker} ({place})")
+        text = ", ".join([f"*{name}", *words[1:]]).upper()
+        if GENERATING.match(text) or (name == "SYSTEM" and rows):
+            raise ForeignRefusal(
+                f"nodes and elements must be written out, not made by {shown(text)} ({place})"
+            )
         counts[name] += 1
         if name in ("PART", "INSTANCE") and (rows or counts[name] > 1):
             raise ForeignRefusal(f"there must be one part, which no *INSTANCE moves, not *{name} ({place})")
@@ -163,33 +159,26 @@ def abaqus(path: Path) -> Iterator[Record]:
         elif name == "NODE" and not in_assembly:
             yield from ((place, "node", "", row) for row in rows)
         elif name == "ELEMENT":
-            yield from _elements(place, in_assembly, parameters, rows)
+            type_, words = parameters.get("TYPE", "").upper(), list[str]()
+            match = TYPE.match(type_)
+            shape = (match and match.lastgroup) or ""
+            if match is None or (in_assembly and shape != "skipped"):
+                raise ForeignRefusal(
+                    f"elements must be in a part and of a known type, not as {shown(type_)} ({place})"
+                )
+            for row in rows:
+                words += filter(None, row)
+                if shape == "skipped" or len(words) == int(match[shape]) + 1:
+                    yield (
+                        place,
+                        shape,
+                        type_ if shape == "skipped" else parameters.get("ELSET", ""),
+                        words[1:],
+                    )
+                    words = []
+            if words:
+                raise ForeignRefusal(f"elements of type {type_} must have {match[shape]} nodes ({place})")
 
-
-def _elements(
-    place: str, in_assembly: bool, parameters: dict[str, str], rows: list[list[str]]
-) -> Iterator[Record]:
-    """The elements in the rows of an *ELEMENT. Raises ForeignRefusal."""
-    kind, words = parameters.get("TYPE", "").upper(), list[str]()
-    match = TYPE.match(kind)
-    if match is None:
-        raise ForeignRefusal(f"element type {shown(kind)} is not known ({place})")
-    shape = match.lastgroup or ""
-    if shape == "skipped":
-        yield from ((place, shape, kind, []) for _ in rows)
-        return
-    if in_assembly:
-        raise ForeignRefusal(f"elements of type {kind} must be in a *PART, not in *ASSEMBLY ({place})")
-    for row in rows:
-        words += filter(None, row)
-        if len(words) == int(match[shape]) + 1:
-            yield place, shape, parameters.get("ELSET", ""), words[1:]
-            words = []
-    if words:
-        raise ForeignRefusal(f"elements of type {kind} must have {match[shape]} nodes ({place})")
-
-
-# Nastran: cards of a name and fields, on one or several lines.
 
 CARD: Final = re.compile(
     r"C(?:(?P<triangle>TRI(?:A3|AR|A6|AX)|TRAX3)|(?P<quad>QUAD[4R8]?|QUADX[48]?|SHEAR)|(?P<tetra>TETRA)"
@@ -216,10 +205,8 @@ def _cards(path: Path) -> Iterator[tuple[str, str, list[str]]]:
         elif text:
             start = text.split(",")[0] if "," in text else text[:8]
             count = 4 if "*" in start else 8
-            width = 64 // count
-            ends = range(8, 72, width)
-            words = text.split(",")[1:] if "," in text else [text[at : at + width] for at in [*ends, 72]]
-            words = [*(word.strip() for word in words), *[""] * 9]
+            words = text.split(",")[1:] if "," in text else re.findall(f".{{1,{64 // count}}}", text[8:])
+            words = [word.strip() for word in [*words, *[""] * 9]]
             start = start.strip()
             if start and start[0] not in "+*":
                 yield place, name, fields
@@ -240,7 +227,7 @@ def nastran(path: Path) -> Iterator[Record]:
     """
     for place, name, fields in _cards(path):
         match = CARD.fullmatch(name)
-        kind = (match and match.lastgroup) or ""
+        kind = match and match.lastgroup
         if name in ("GRID", "GRDSET") and fields[1].strip("0"):
             system = f"the coordinate system {fields[1]}"
             raise ForeignRefusal(f"{name} {fields[0]} must be in the basic system, not in {system} ({place})")
@@ -248,8 +235,6 @@ def nastran(path: Path) -> Iterator[Record]:
             raise ForeignRefusal(f"element type {shown(name)} is not known ({place})")
         if name == "GRID":
             yield place, "node", "", [fields[0], *fields[2:5]]
-        elif kind == "skipped":
-            yield place, kind, name, []
         elif kind:
-            corners = [*fields[2:], *[""] * 8][: CORNERS[kind]]
-            yield place, kind, f"part {fields[1] or fields[0]}", corners
+            part = name if kind == "skipped" else f"part {fields[1] or fields[0]}"
+            yield place, kind, part, [*fields[2:], *[""] * 8][: CORNERS.get(kind, 0)]

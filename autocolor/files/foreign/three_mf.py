@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import lib3mf
 import numpy as np
@@ -24,12 +24,6 @@ from autocolor.files.meshes.repair import printable_name
 Mesh = tuple[Floats, Indices, list[tuple[str, Indices]]]
 """Nodes, (nodes, 3), triangles, (triangles, 3), and the rows of the triangles of each material."""
 
-LEFT_OUT: Final = ("Support", "SolidSupport", "Other")
-"""The types of objects that are not a part of the product."""
-
-HARMLESS: Final = (0x80B0, 0x80BD)
-"""Warnings about a missing UUID, and about objects that are left out anyway."""
-
 
 def read(path: Path, kind: str) -> ForeignMesh:
     """The triangles of a 3MF file; `kind` is not used. Raises ForeignRefusal."""
@@ -38,7 +32,8 @@ def read(path: Path, kind: str) -> ForeignMesh:
     try:
         reader.ReadFromFile(str(path))
         warnings = dict(reader.GetWarning(row) for row in range(reader.GetWarningCount()))
-        texts = [text for code, text in warnings.items() if code not in HARMLESS]
+        # Warnings about a missing UUID, and about objects that are left out anyway.
+        texts = [text for code, text in warnings.items() if code not in (0x80B0, 0x80BD)]
         for text in texts:
             if "extension" in text or "Element" in text:
                 raise unreadable("lib3mf", text)
@@ -81,7 +76,7 @@ def _placed(
 ) -> Iterator[tuple[Any, str, Floats]]:
     """The meshes that an object places, with names and transforms, (4, 4); a nameless one is named `name`."""
     name, kind = handle.GetName().strip() or name, handle.GetType().name
-    if kind in LEFT_OUT:
+    if kind in ("Support", "SolidSupport", "Other"):
         skipped[f"objects of the type {kind.lower()}"] += 1
     elif handle.IsComponentsObject():
         for row in range(handle.GetComponentCount()):
@@ -95,8 +90,6 @@ def _placed(
 
 def _mesh(model: Any, handle: Any, name: str, skipped: Counter[str], colors: dict[str, Color]) -> Mesh:
     """The mesh of an object, whose colors are noted. Raises ForeignRefusal unless it is all triangles."""
-    if not handle.IsMeshObject():
-        raise ForeignRefusal(f"object {name} must be a mesh, not a level set")
     lattice = handle.BeamLattice()
     if lattice.GetBeamCount() or lattice.GetBallCount():
         raise ForeignRefusal(f"object {name} must have triangles only, not a beam lattice")

@@ -10,6 +10,8 @@ alone: it trusts the nodes of cells, and numbers the cells of a surface wrongly 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
@@ -17,7 +19,7 @@ import numpy as np
 from vtkmodules import vtkIOXML
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkGenericCell
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkGenericCell
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOLegacy import vtkDataSetReader
@@ -31,48 +33,33 @@ from autocolor.files.meshes.repair import RawPolygons, printable_name
 from autocolor.files.reading import HEAD, read_head, read_whole
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
-XML_TYPE: Final = re.compile(rb"<VTKFile\s[^>]*?type\s*=\s*[\"'](\w+)[\"']")
-
-DATA_SETS: Final = ("PolyData", "UnstructuredGrid", "StructuredGrid", "RectilinearGrid", "ImageData")
+DATA_SETS: Final = "PolyData|UnstructuredGrid|StructuredGrid|RectilinearGrid|ImageData"
 """The types of XML files that are read. Others name more files, or have no polygons."""
 
-# Cells by the numbers of their types.
-
-EMPTY: Final = 0
-STRIP: Final = 6
-ANY_POLYGON: Final = 7
-PIXEL: Final = 8
-VOXEL: Final = 11
-POLYHEDRON: Final = 42
 SHAPE_OF_EDGES: Final = {3: "triangle", 4: "quad", 6: "tetra", 8: "pyramid", 9: "wedge", 12: "hexahedron"}
 """The shape of a cell by the number of its edges."""
 
 ALONG_AXES: Final = [0, 1, 3, 2, 4, 5, 7, 6]
 """The order in which the corners of a pixel or voxel go around it."""
 
-DUPLICATE: Final = 1
-HIDDEN: Final = 32
-"""The bits of cells that are elsewhere, too, and of those that are not shown."""
-
 
 def read(path: Path, kind: str) -> ForeignMesh:
-    """The surface of a VTK file of the kind "legacy" or "xml". Raises ForeignRefusal."""
-    window = listening()
-    data, sentences = _xml(path) if kind == "xml" else _legacy(path), list[str]()
-    refuse_printed(window, path)
-    # VTK prints of arrays that have other numbers of values than there are nodes or cells.
-    data.CheckAttributes()
-    refuse_printed(window, path)
+    """The surface of a VTK file of the kind "vtk" or "vtk xml". Raises ForeignRefusal."""
+    sentences = list[str]()
+    with listening(path):
+        data = _xml(path) if kind == "vtk xml" else _legacy(path)
+        # VTK prints of arrays that have other numbers of values than there are nodes or cells.
+        data.CheckAttributes()
     if not data.GetNumberOfPoints() or not data.GetNumberOfCells():
         raise ForeignRefusal("it must have nodes and cells, and has none")
     ghosts, is_turned = _ghosts(data), False
     if count := np.count_nonzero(ghosts):
         sentences.append(f"left out hidden or duplicate cells: {count:,}")
     if not data.IsA("vtkPolyData") and not data.IsA("vtkUnstructuredGrid"):
-        data, is_turned = _outer(data, sentences)
+        with listening(path):
+            data, is_turned = _outer(data, sentences)
         ghosts = _ghosts(data)
-    surface = surface_of(data, (ghosts & HIDDEN) != 0)
-    refuse_printed(window, path)
+    surface = surface_of(data, (ghosts & vtkDataSetAttributes.HIDDENCELL) != 0)
     sentences += surface.sentences
     flats = surface.flats.chosen(ghosts[surface.flats.cells] == 0)
     if not len(flats.cells):
@@ -96,7 +83,7 @@ def _ghosts(data: Any) -> AnyArray:
     """For each cell, whether it is elsewhere, too, or not shown; otherwise 0."""
     array = data.GetCellData().GetArray("vtkGhostType")
     ghosts: AnyArray = vtk_to_numpy(array) if array else np.zeros(data.GetNumberOfCells(), np.uint8)
-    ghosts = ghosts & (DUPLICATE | HIDDEN)
+    ghosts = ghosts & (vtkDataSetAttributes.DUPLICATECELL | vtkDataSetAttributes.HIDDENCELL)
     return ghosts
 
 
@@ -117,47 +104,36 @@ def _legacy(path: Path) -> Any:
 
 def _xml(path: Path) -> Any:
     """The data set of an XML file, of all pieces. Raises ForeignRefusal for a type with other files."""
-    match = XML_TYPE.search(read_head(path))
-    type_ = match[1].decode("latin-1") if match else "none"
-    if type_ not in DATA_SETS:
+    match = re.search(rf"<VTKFile\s[^>]*?type\s*=\s*[\"']({DATA_SETS})[\"']".encode(), read_head(path))
+    if match is None:
+        types = DATA_SETS.replace("|", ", ")
         raise ForeignRefusal(
-            f"the type of a VTK XML file must be {', '.join(DATA_SETS[:-1])} or {DATA_SETS[-1]}, not"
-            f" {shown(type_)}",
-            "write its surface as .vtp",
+            f"the type of a VTK XML file must be one of {types}", "write its surface as .vtp"
         )
-    reader = getattr(vtkIOXML, f"vtkXML{type_}Reader")()
+    reader = getattr(vtkIOXML, f"vtkXML{match[1].decode()}Reader")()
     reader.SetFileName(str(path))
     reader.Update()
     return reader.GetOutputDataObject(0)
 
 
-# What VTK prints.
-
-PRINTED: Final = re.compile(r"(ERROR|Generic ERROR|Warning|Generic Warning): In [^\n]*\n((?:[^\n]+\n)+)")
-OBJECT: Final = re.compile(r"\w* ?\((?:0x)?(?:[0-9a-fA-F]+|nullptr)\): |\s+")
+PRINTED: Final = re.compile(r"(?:ERROR|Warning): In .*\n(?:\w* ?\(\w+\): )?\s*(.+)")
 
 
-def listening() -> Any:
-    """The window that VTK prints into from now on."""
+@contextmanager
+def listening(path: Path) -> Iterator[None]:
+    """Raise ForeignRefusal at the end with the first error or warning, which may tell of lost data."""
     window = vtkStringOutputWindow()
     vtkOutputWindow.SetInstance(window)
-    return window
-
-
-def refuse_printed(window: Any, path: Path) -> None:
-    """Raise ForeignRefusal with the first error that VTK printed, or warning: it may tell of lost data."""
-    printed = PRINTED.findall(_text(window.GetOutput()))
-    for _, lines in sorted(printed, key=lambda each: "ERROR" not in each[0]):
-        line = " ".join(OBJECT.sub(" ", lines).replace(str(path), path.name).split())
-        raise unreadable("VTK", line.rstrip("."))
+    try:
+        yield
+    finally:
+        if printed := PRINTED.search(_text(window.GetOutput())):
+            raise unreadable("VTK", printed[1].replace(str(path), path.name).strip(" .")) from None
 
 
 def _text(given: str | bytes | None) -> str:
     """A text of VTK's, which is bytes if it is not UTF-8."""
     return given.decode("latin-1") if isinstance(given, bytes) else given or ""
-
-
-# The surface.
 
 
 def places_of(data: Any) -> Floats:
@@ -206,49 +182,40 @@ def _lists(cells: Any) -> tuple[Indices, Indices]:
     return numbers, sizes if len(numbers) else np.zeros_like(sizes)
 
 
-def _cells(data: Any) -> tuple[Indices, Flats]:
-    """The types and the nodes of all cells. Raises ForeignRefusal."""
+def surface_of(data: Any, is_hidden: Booleans | bool = False) -> CellSurface:
+    """The surface of polygonal data or an unstructured grid. Raises ForeignRefusal for strange cells."""
     if data.IsA("vtkPolyData"):
         arrays = (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips())
         numbers, sizes = (np.concatenate(each) for each in zip(*map(_lists, arrays), strict=True))
-        types = np.repeat(
-            [1, 3, ANY_POLYGON, STRIP],
-            [each.GetNumberOfCells() for each in arrays],
-        )
+        # The types of vertices, lines, polygons and strips.
+        types = np.repeat([1, 3, 7, 6], [each.GetNumberOfCells() for each in arrays])
     else:
         numbers, sizes = _lists(data.GetCells())
         # The name of the array before VTK 9.6 is the second.
         types = vtk_to_numpy(getattr(data, "GetCellTypesArray", data.GetCellTypes)()).astype(np.intp)
-    return types, Flats(numbers, sizes, np.arange(len(sizes)))
-
-
-def surface_of(data: Any, is_hidden: Booleans | bool = False) -> CellSurface:
-    """The surface of polygonal data or an unstructured grid. Raises ForeignRefusal for strange cells."""
-    types, cells = _cells(data)
-    types = np.where(is_hidden, EMPTY, types)
+    cells = Flats(numbers, sizes, np.arange(len(sizes)))
+    # Zero is the type of empty cells.
+    types = np.where(is_hidden, 0, types)
     blocks, flats, polyhedra, skipped = list[Block](), list[Flats](), list[Flats](), list[str]()
     for type_ in np.unique(types).tolist():
         rows, example = np.flatnonzero(types == type_), vtkGenericCell.InstantiateCell(type_)
-        if type_ == STRIP:
+        name = "" if example is None else example.GetClassName()
+        if name == "vtkTriangleStrip":
             flats.append(_triangles(cells.chosen(rows)))
-        elif type_ == ANY_POLYGON:
+        elif name == "vtkPolygon":
             flats.append(cells.chosen(rows))
-        elif type_ == POLYHEDRON:
+        elif name == "vtkPolyhedron":
             polyhedra.append(_faces(data, rows))
-        elif example is not None and example.GetCellDimension() < 2:
-            if type_ != EMPTY:
-                skipped.append(
-                    f"skipped {'lines' if example.GetCellDimension() else 'vertices'}: {len(rows):,}"
-                )
-        elif example is not None and (shape := SHAPE_OF_EDGES.get(example.GetNumberOfEdges())):
+        elif name and example.GetCellDimension() < 2:
+            what = ("vertices", "lines")[example.GetCellDimension()]
+            skipped += [f"skipped {what}: {len(rows):,}"] * (type_ > 0)
+        elif name and (shape := SHAPE_OF_EDGES.get(example.GetNumberOfEdges())):
             count, sizes = CORNERS[shape], cells.corner_counts[rows]
-            is_wrong = sizes != count if example.IsLinear() else sizes < count
-            if is_wrong.any():
-                wrong = sizes[is_wrong][0]
-                raise ForeignRefusal(f"a cell of the type {type_} must have {count} nodes, not {wrong}")
+            if min(sizes) < count or (example.IsLinear() and max(sizes) > count):
+                raise ForeignRefusal(f"all cells of the type {type_} must have {count} nodes")
             if not example.IsLinear():
                 skipped.append(f"took the corners alone of cells of the type {type_}: {len(rows):,}")
-            order = ALONG_AXES[:count] if type_ in (PIXEL, VOXEL) else range(count)
+            order = ALONG_AXES[:count] if name in ("vtkPixel", "vtkVoxel") else range(count)
             blocks.append((shape, cells.corners[cells.starts[rows, None] + np.array(order)], rows))
         else:
             raise ForeignRefusal(f"a cell must be of a type with faces, not of the type {type_}")
@@ -285,11 +252,10 @@ def _attributes(
         for at in range(owner.GetNumberOfArrays()):
             array = owner.GetAbstractArray(at)
             name, width = _text(array.GetName()), array.GetNumberOfComponents()
-            is_normals = array is owner.GetNormals() or (name.lower() == "normals" and width == 3)
             is_color = array.IsA("vtkUnsignedCharArray") and width in (3, 4)
-            if is_normals and of == NODE:
-                normals = vtk_to_numpy(array)[rows].astype(np.float64)
-            elif is_normals or is_color or not array.IsNumeric() or array.IsA("vtkBitArray"):
+            if array is owner.GetNormals() or (name.lower() == "normals" and width == 3):
+                normals = vtk_to_numpy(array)[rows].astype(np.float64) if of == NODE else normals
+            elif is_color or not array.IsNumeric():
                 left_out.append(shown(name))
             elif name != "vtkGhostType" and array is not owner.GetTCoords():
                 scalars.add(name, vtk_to_numpy(array), of, rows)

@@ -33,7 +33,12 @@ def main(arguments: list[str]) -> int:
     try:
         module = importlib.import_module(f"autocolor.files.foreign.{name}")
         with allowing(float(factor)):
-            limit_memory(most_memory(int(size)))
+            if sys.platform != "win32":
+                import resource
+
+                _, most = resource.getrlimit(resource.RLIMIT_AS)
+                memory = min(most_memory(int(size)), most if most != resource.RLIM_INFINITY else 1 << 62)
+                resource.setrlimit(resource.RLIMIT_AS, (memory, most))
             path, placed = Path(mesh), Placement(*json.loads(placement))
             save(report_of(module.read(path, kind), path.name, placed), Path(result))
         return 0
@@ -42,26 +47,14 @@ def main(arguments: list[str]) -> int:
     except MemoryError:
         reason = str(unreadable(library, "it needs more memory than its size and --limit allow"))
     except (Exception, SystemExit) as error:
-        reason = str(error)[:300]
-        if not reason or (
-            type(error).__module__ == "builtins" and not isinstance(error, (OSError, ValueError))
-        ):
-            # Such as a KeyError, which says nothing to a user.
-            reason = f"it is cut short or damaged, or has what {library} does not know"
-        reason = str(unreadable(library, reason))
+        # Others, such as a KeyError, say nothing to a user.
+        is_plain = isinstance(error, (OSError, ValueError)) or type(error).__module__ != "builtins"
+        line = str(error)[:300] if is_plain else ""
+        reason = str(
+            unreadable(library, line or f"it is cut short or damaged, or has what {library} does not know")
+        )
     Path(result).write_text(" ".join(reason.split()), "utf-8", "replace")
     return FAILED
-
-
-def limit_memory(memory: int) -> None:
-    """Limit the memory of this process to some bytes."""
-    if sys.platform == "win32":
-        return
-    import resource
-
-    most = resource.getrlimit(resource.RLIMIT_AS)[1]
-    memory = memory if most == resource.RLIM_INFINITY else min(memory, most)
-    resource.setrlimit(resource.RLIMIT_AS, (memory, most))
 
 
 if __name__ == "__main__":

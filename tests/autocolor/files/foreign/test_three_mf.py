@@ -29,12 +29,12 @@ TYPES = (
 TRIANGLES = [piece for a, b, c, d in SIDES for piece in ((a, b, c), (a, c, d))]
 
 
-def cube(size: float = 1, painted: str = "", others: str = "", triangles: int = 12) -> str:
+def cube(size: float = 1, painted: str = "", others: str = "") -> str:
     """A mesh; the first six triangles have the attributes `painted`."""
     vertices = "".join(f'<vertex x="{size * x}" y="{size * y}" z="{size * z}"/>' for x, y, z in CUBE)
     rows = "".join(
         f'<triangle v1="{a}" v2="{b}" v3="{c}" {painted if number < 6 else ""}/>'
-        for number, (a, b, c) in enumerate(TRIANGLES[:triangles])
+        for number, (a, b, c) in enumerate(TRIANGLES)
     )
     return f"<mesh><vertices>{vertices}</vertices><triangles>{rows}</triangles>{others}</mesh>"
 
