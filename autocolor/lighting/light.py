@@ -24,7 +24,18 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, RealArray, Singles, columns, dot, lengths, normalized, power
+from autocolor.arrays import (
+    Booleans,
+    Floats,
+    Indices,
+    RealArray,
+    Singles,
+    columns,
+    dot,
+    lengths,
+    normalized,
+    power,
+)
 from autocolor.lighting.controls import Falloff, LitSide, edge_share, soft_cone_share
 from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import Phong, ReflectionModel
@@ -147,7 +158,7 @@ def shares_of(light: CameraLight, rays: Rays) -> Iterator[tuple[str, RealArray[A
     if light.falloff is not None:
         yield "falloff", light.falloff.share(rays.length)
     if rays.light is not None and row.cone_angle is not None:
-        share = is_within(rays.light, row.cone_angle).astype(rays.light.dtype)
+        share = is_within(rays, row.cone_angle).astype(rays.light.dtype)
         if row.inner_angle is not None and row.inner_angle < row.cone_angle:
             share *= soft_cone_share(rays.light, row.inner_angle, row.cone_angle)
         yield "cone", share
@@ -155,13 +166,15 @@ def shares_of(light: CameraLight, rays: Rays) -> Iterator[tuple[str, RealArray[A
         yield side.name, edge_share(side, rays.vectors(POINT))
 
 
-def is_within(cos_light: RealArray[Any], cone_angle: float) -> Any:
-    """Whether each cos(L) is within a cone, whose rim is lit.
+def is_within(rays: Rays, cone_angle: float) -> Booleans:
+    """Whether each point is within a cone, whose rim is lit.
 
     Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside. With C = 0 nothing
     is dark behind the light, so a cone of more than 90 degrees lights there too.
     """
-    return cos_light >= least_cosine(cone_angle) - np.finfo(cos_light.dtype).eps
+    assert rays.light is not None
+    within: Booleans = rays.light >= least_cosine(cone_angle) - np.finfo(rays.light.dtype).eps
+    return within
 
 
 def least_cosine(cone_angle: float) -> float:

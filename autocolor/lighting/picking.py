@@ -12,12 +12,23 @@ from typing import Final, Literal, NamedTuple, get_args
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Indices, Singles, chunks, dot, underflowing, unit_vector
+from autocolor.arrays import (
+    Booleans,
+    Bytes,
+    Indices,
+    Singles,
+    chunks,
+    columns,
+    dot,
+    underflowing,
+    unit_vector,
+)
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.controls import Axis, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
-from autocolor.lighting.light import CameraLight, is_within
+from autocolor.lighting.light import CameraLight, exact_rays_to, is_within
 from autocolor.lighting.picture import Picture
+from autocolor.lighting.precision import uncertain_share
 from autocolor.lighting.rays import (
     camera_light,
     direction_between,
@@ -306,9 +317,13 @@ def _inside(points: VisiblePoints, light: Light) -> dict[Rim, Booleans]:
         camera = camera_light(light, points)
         inside[CONE] = np.empty(len(points.pixels), np.bool_)
         for chunk in points.chunks:
-            rays, _ = fast_rays(camera, points.rows[:, chunk.pixels], points.radius)
-            assert rays.light is not None
-            inside[CONE][chunk.pixels] = is_within(rays.light, light.cone_angle)
+            rays, rounding = fast_rays(camera, points.rows[:, chunk.pixels], points.radius)
+            within = inside[CONE][chunk.pixels]
+            within[:] = is_within(rays, light.cone_angle)
+            again = uncertain_share(camera, rays, rounding)
+            if again is not None:
+                exact = exact_rays_to(camera, columns(rays.rows, np.flatnonzero(again)))
+                within[again] = is_within(exact, light.cone_angle)
     for rim, side in flap_sides(light, points).items():
         inside[rim] = is_inside(side, points.rows[POINT])
     for name, side in half_space_sides(light, points).items():

@@ -301,8 +301,10 @@ def test_the_shares_of_several_soft_edges_are_multiplied() -> None:
     ],
 )
 def test_a_point_is_in_the_cone_up_to_its_rim(cosine: float, cone_angle: float, lit: bool) -> None:
+    points = wall_points()
+    rays, _ = fast_rays(camera_light(spot(30.0, None), points), points.rows, points.radius)
     for kind in (np.float32, np.float64):
-        assert is_within(np.array([cosine], kind), cone_angle).tolist() == [lit]
+        assert is_within(rays._replace(light=np.array([cosine], kind)), cone_angle).tolist() == [lit]
 
 
 def cosine(degrees: float) -> float:
