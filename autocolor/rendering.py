@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from typing import Final
@@ -45,16 +44,6 @@ LARGEST_RASTER: Final = 16384
 BYTES_OF_PIXEL: Final = 96
 """Measured where all pixels see polygons: 64 bytes, and 8 for each of four lights. Planes of more lights have
 a budget of their own (see `illumination`)."""
-
-LARGE: Final = 1600 * 1200
-"""Pixels of the largest picture whose arrays are not larger than 32 MB."""
-
-M_TRIM_THRESHOLD: Final = -1
-M_MMAP_THRESHOLD: Final = -3
-"""Options of glibc's `mallopt`, from malloc.h."""
-
-MOST_FREED: Final = 1 << 29
-"""Limit: freed bytes that a process may reuse; a picture of 2560 x 1920 takes a bit more than half."""
 
 ALGORITHMS: Final[dict[str, Callable[..., VisiblePoints]]] = {"batch": visible_surfaces, "watkins": watkins}
 
@@ -136,8 +125,6 @@ def rendering(
             "render fewer lines and elements",
         )
         _keep_arrays()
-        if lines * elements > LARGE:
-            _keep_large_arrays()
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
         with timed(LOG, f"visible surfaces, {elements} x {lines}"):
             points = ALGORITHMS[algorithm](
@@ -222,25 +209,6 @@ def _keep_arrays() -> None:
     an array of this size was freed, glibc holds the memory. Measured: this saves 4 to 15 ms for each picture.
     """
     _ = np.empty(30 << 20, np.uint8)
-
-
-@cache
-def _keep_large_arrays() -> None:
-    """Make glibc reuse the memory of larger arrays, too, for pictures of more than `LARGE` pixels.
-
-    Without this, 2560 x 1920 takes 5,000 page faults for each picture, up to a fifth of its time. From then
-    on the process keeps up to `MOST_FREED` bytes that it freed, and returns only the excess.
-    Measured and rejected: no mapping at all (M_MMAP_MAX), which saves as much and would never return any
-    array.
-    """
-    # Not every system has this library, and not every Python can ask it.
-    with suppress(Exception):
-        import ctypes
-
-        process = ctypes.CDLL(None)
-        _ = process.gnu_get_libc_version
-        for option in (M_MMAP_THRESHOLD, M_TRIM_THRESHOLD):
-            process.mallopt(option, MOST_FREED)
 
 
 # Pacing. While a picture moves, it may be coarse, so that its fields follow each other fast enough. A coarse

@@ -1,10 +1,5 @@
 from __future__ import annotations
 
-import ctypes
-import os
-import platform
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Picture, Scene, Surface, render, scene_of
-from autocolor import rendering as rendering_module
 from autocolor.rendering import BLOCKS, PICTURE_SECONDS, Rendering, block_for, blocks_of, rendering
 from autocolor.testing import scenes
 from tests.small import cube, grid, sphere, wall_scene
@@ -240,43 +234,6 @@ test_what_is_refused = refused(
         ((4, 4, {"algorithm": "watkin"}), "there is no algorithm 'watkin'; did you mean 'watkins'?"),
     ],
 )
-
-
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="needs glibc")
-@pytest.mark.skipif(platform.libc_ver()[1] < "2.35", reason="older glibc keeps no more than 32 MB")
-def test_the_memory_of_large_arrays_is_reused_from_picture_to_picture() -> None:
-    code = """
-import resource
-import numpy
-from autocolor import rendering
-rendering._keep_large_arrays()
-numpy.ones(64 << 20, numpy.uint8)
-before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-numpy.ones(64 << 20, numpy.uint8)
-print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
-"""
-    # One fault for each page of 4096 bytes would be 16,384.
-    environment = {**os.environ, "NUMPY_MADVISE_HUGEPAGE": "0"}
-    output = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=ROOT,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=60,
-    )
-    assert int(output.stdout) < 1000
-
-
-@pytest.mark.parametrize("problem", [TypeError, OSError, AttributeError])
-def test_a_picture_needs_no_glibc(problem: type[Exception], monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails(_: object) -> None:
-        raise problem
-
-    monkeypatch.setattr(ctypes, "CDLL", fails)
-    rendering_module._keep_large_arrays.cache_clear()
-    assert render(two_surfaces(), 6, 8).surface_number.any()
 
 
 @pytest.mark.parametrize("scalar", [{"name": "x"}, {"name": "distance", "direction": (2, 0, 0)}])
