@@ -1,4 +1,4 @@
-"""Options that several commands share: `--normals`, `--paints`, `--size`, `--limit` and `-v`.
+"""Options that several commands share: `--normals`, `--paper`, `--paints`, `--size`, `--limit` and `-v`.
 
 An invalid value of an option is a UsageError, not an InputError.
 """
@@ -48,6 +48,14 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
         return scene
     with as_usage("--normals: "):
         return scene.replace(words="normals")
+
+
+paper_option = click.option(
+    "--paper",
+    is_flag=True,
+    help="Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
+    " maximum, no smooth edges.",
+)
 
 
 def with_held_exposure(scene: Scene, picture: Picture) -> Scene:

@@ -10,6 +10,7 @@ import click
 from autocolor.commands.completion import complete_lights, complete_views
 from autocolor.commands.options import (
     normals_option,
+    paper_option,
     size_option,
     smooth_of,
     smooth_option,
@@ -96,6 +97,7 @@ Examples:
 )
 @set_option
 @normals_option
+@paper_option
 @size_option
 @smooth_option
 @click.option(
@@ -117,6 +119,7 @@ def render(
     view_name: str | None,
     settings: tuple[str, ...],
     normals: bool,
+    paper: bool,
     size: tuple[int, int],
     smooth: str | None,
     hold_exposure: bool,
@@ -131,7 +134,7 @@ def render(
 
     others = {"--layers": layers, "--words": words, "--indexed": indexed}
     is_image_alone = not any(others.values())
-    if smooth is None and not is_image_alone:
+    if smooth is None and (paper or not is_image_alone):
         smooth = "1"
 
     def rendered(scene: Scene) -> Picture:
@@ -143,7 +146,7 @@ def render(
     report = reframed(read(source), elements / lines)
     if source is not None:
         tell_up(report, source)
-    original = with_normals(report.scene, normals)
+    original = with_normals(report.scene.as_in_1983() if paper else report.scene, normals)
     if view_name is not None:
         original = original.with_taken_view(view_name)
     if hold_exposure:

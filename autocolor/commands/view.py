@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 import click
 
-from autocolor.commands.options import bringing_paints, normals_option, paints_option, with_normals
+from autocolor.commands.options import (
+    bringing_paints,
+    normals_option,
+    paints_option,
+    paper_option,
+    with_normals,
+)
 from autocolor.commands.scenes import (
     SceneSource,
     created_again,
@@ -58,6 +64,7 @@ Examples:
 @click.option("--sessions", is_flag=True, help="List the sessions that were not closed, and exit.")
 @click.option("--forget", metavar="SESSION", help="Remove a session that was not closed, and exit.")
 @normals_option
+@paper_option
 @paints_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
@@ -67,6 +74,7 @@ def view(
     source: SceneSource | None,
     settings: tuple[str, ...],
     normals: bool,
+    paper: bool,
     paints: str | None,
     recover: str | None,
     sessions: bool,
@@ -80,7 +88,7 @@ def view(
         raise UsageError(
             f"view must have one of SCENE, --recover, --sessions and --forget, not {sum(asked)}; name a scene"
         )
-    for option, is_given in (("--set", bool(settings)), ("--normals", normals)):
+    for option, is_given in (("--set", bool(settings)), ("--normals", normals), ("--paper", paper)):
         if is_given and source is None:
             raise UsageError(f"{option} is for SCENE, not for sessions; leave it out")
     if paints is not None and (sessions or forget is not None):
@@ -96,7 +104,7 @@ def view(
         show(session.history, left=folder, prepare=bring, waiting=waiting)
     elif source is not None:
         waiting = Waiting(Path(source.path).name or source.path, full_screen, fit)
-        report, history = waiting.until("reading", lambda: session_of(source, settings, normals))
+        report, history = waiting.until("reading", lambda: session_of(source, settings, normals, paper))
 
         def prepare(viewer: Viewer) -> None:
             # Meshes that the user opens later get the same up axis and scale.
@@ -114,7 +122,9 @@ def left_session(name: str) -> tuple[Path, JournalSession]:
     return chosen_session(name)
 
 
-def session_of(source: SceneSource, settings: tuple[str, ...], normals: bool) -> tuple[SceneReport, History]:
+def session_of(
+    source: SceneSource, settings: tuple[str, ...], normals: bool, paper: bool = False
+) -> tuple[SceneReport, History]:
     """The report of reading a scene, and a session with it, in which the settings are a step."""
     from autocolor.commands.settings import with_settings
     from autocolor.files.state import note_file
@@ -123,7 +133,8 @@ def session_of(source: SceneSource, settings: tuple[str, ...], normals: bool) ->
 
     place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
     report = read(source)
-    edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
+    start = report.scene.as_in_1983() if paper else report.scene
+    edited = created_again(report, with_normals(with_settings(start, settings), normals))
     note_file(source.path)
     history = History(report.scene, place)
     if edited is not report.scene:

@@ -182,7 +182,7 @@ class SceneFields(TypedDict, total=False):
     dither: Literal["off", "ordered"]
     division: Literal["covered", "equal"]
     words: Literal["levels", "normals"]
-    interpolation: Literal["scan line", "invariant"]
+    interpolation: Literal["scan line", "invariant", "linear"]
     background: str | Sequence[int]
     front: Literal["x", "-x", "y", "-y"] | None
     views: Sequence[Row]

@@ -52,6 +52,7 @@ from autocolor.scene.following import (
     lights_in_world,
     vector_columns,
 )
+from autocolor.scene.in_1983 import changes_to_1983
 from autocolor.scene.kinds import ColorKind, CurveKind, Instance, Number, OneOf, Text
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
@@ -69,7 +70,8 @@ DIVISIONS: Final = ("covered", "equal")
 DITHERS: Final = ("off", "ordered")
 SCAN_LINE: Final = "scan line"
 INVARIANT: Final = "invariant"
-INTERPOLATIONS: Final = (SCAN_LINE, INVARIANT)
+LINEAR: Final = "linear"
+INTERPOLATIONS: Final = (SCAN_LINE, INVARIANT, LINEAR)
 FRONTS: Final = ("x", "-x", "y", "-y")
 LEVELS: Final = "levels"
 NORMALS: Final = "normals"
@@ -175,8 +177,8 @@ class Scene(Row):
         Column(
             OneOf(INTERPOLATIONS),
             Tier.FRAME,
-            "Whether quads are interpolated along scan lines, or as two triangles, unchanged as the camera"
-            " rolls.",
+            "Whether normals are interpolated along scan lines on the surface, in quads as two triangles,"
+            " unchanged as the camera rolls, or along scan lines in the picture, as in 1983.",
         ),
     ] = SCAN_LINE
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
@@ -252,6 +254,10 @@ class Scene(Row):
     def replace(self, /, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
         return replaced(self, changes)
+
+    def as_in_1983(self) -> Scene:
+        """The scene with what the paper describes, and nothing since; see `in_1983`."""
+        return replaced(self, changes_to_1983(self.surfaces, self.lights))
 
     def equals(self, other: Scene) -> bool:
         """Whether all columns are equal. Meshes are compared by identity."""

@@ -84,6 +84,11 @@ class MappingScreen(OverPicture):
             ),
             Button("straight", "A straight curve with five points.", run=partial(self._put_points, STRAIGHT)),
             self._remove_row(),
+            Button(
+                "as in 1983",
+                "What the paper describes, and nothing since: normals linear in the picture, Phong's model.",
+                run=lambda: session.edit(session.scene.as_in_1983()),
+            ),
             Gap("exposure gap"),
             exposure_row(self.edits),
             *surface_rows(session, self._put),

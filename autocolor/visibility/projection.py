@@ -113,7 +113,7 @@ class Projection:
     `from_behind` tells whether the eye sees the back, and `line_counts`, (polygons,) intp, how many lines
     cross the polygon. No corner of a polygon has an inverse depth above `nearest`. `planes` is None if no
     polygons share a plane. `diagonals`, (polygons,) uint8, has the corner where the diagonal of a quad
-    begins, as in `Diagonals`; None if interpolation follows the scan lines.
+    begins, as in `Diagonals`; None if interpolation follows the scan lines. `interpolation` is the scene's.
     """
 
     mesh: Mesh
@@ -135,6 +135,7 @@ class Projection:
     nearest: float
     planes: PlanesInView | None
     diagonals: Bytes | None
+    interpolation: str = SCAN_LINE
 
     @cached_property
     def middle(self) -> Floats:
@@ -185,6 +186,7 @@ def projection(
         nearest,
         planes,
         None if diagonals is None else polygons.diagonals,
+        interpolation,
     )
 
 

@@ -142,6 +142,13 @@ def paper_terms() -> Field:
     )
 
 
+def paper_1983() -> Field:
+    """The coupe with what the paper describes, and as its scene file says."""
+    car = autocolor.demo()
+    before = autocolor.image(car.as_in_1983(), autocolor.render(car.as_in_1983(), 225, 300))
+    return beside(captioned(before, "scene.as_in_1983()", 1), panel(car, "the scene file", 225, 300))
+
+
 def paper_controls() -> Field:
     """The wall of paper.md under one lamp with several controls."""
     wall = names_after("paper")["wall"].replace(exposure={"object": (0, 1.5)})
@@ -240,7 +247,7 @@ def inspect_pixel() -> Field:
 PICTURES: Final[Sequence[Callable[[], Field]]] = (
     display_areas, display_lines, display_curves, display_text, display_images, display_cursors,
     display_view, display_ball, display_stripes, inspect_pixel,
-    paper_terms, paper_controls, paper_words, paper_blends,
+    paper_1983, paper_terms, paper_controls, paper_words, paper_blends,
     elsewhere_lights, emulators_lines,
 )  # fmt: skip
 

@@ -20,7 +20,7 @@ def soups(draw: st.DrawFn) -> Mesh:
     return Mesh(coordinates, np.arange(3 * count).reshape(-1, 3), np.zeros(count, np.intp), ("soup",))
 
 
-interpolations = st.sampled_from(["scan line", "invariant"])
+interpolations = st.sampled_from(["scan line", "invariant", "linear"])
 
 rasters = st.tuples(st.integers(1, 24), st.integers(1, 24))
 

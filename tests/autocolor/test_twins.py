@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -93,13 +94,17 @@ def test_the_intensities_of_a_picture_are_those_of_the_twin(scene: Scene, elemen
             assert intensity == pytest.approx(scene.ambient + math.fsum(lights), abs=1e-4 * whole)
 
 
+@pytest.mark.parametrize("interpolation", ["scan line", "linear"])
 @pytest.mark.parametrize("angle", [0.0, 30.0, 90.0])
-def test_the_points_and_normals_of_a_zigzag_are_those_of_the_renderer(angle: float) -> None:
+def test_the_points_and_normals_of_a_zigzag_are_those_of_the_renderer(
+    angle: float, interpolation: Any
+) -> None:
     # A dart, which a line crosses four times, with a bent normal at each corner.
     corners = np.array([(-1.0, 0.2, 1.0), (0.0, 0.0, -0.4), (1.0, 0.1, 1.0), (0.0, 0.0, -1.0)])
     view = View((0.2, -5.0, 0.3), target=(0.0, 0.0, 0.0), angle=angle)
-    scene = scene_of(Mesh(corners, np.array([[0, 1, 2, 3]]), crease_angle=180.0), view=view)
-    points = visible_surfaces(scene.mesh, view, (1,), LINES, ELEMENTS)
+    mesh = Mesh(corners, np.array([[0, 1, 2, 3]]), crease_angle=180.0)
+    scene = scene_of(mesh, view=view, interpolation=interpolation)
+    points = visible_surfaces(mesh, view, (1,), LINES, ELEMENTS, interpolation=interpolation)
     found = every_point(scene)
     assert np.array([at.point for at in found]) == pytest.approx(points.world_points, abs=1e-6)
     assert np.array([at.normal for at in found]) == pytest.approx(points.world_normals, abs=1e-6)

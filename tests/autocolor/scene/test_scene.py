@@ -10,27 +10,34 @@ import pytest
 from hypothesis import given
 
 from autocolor import (
+    BlinnPhong,
     Flap,
     Flaps,
+    HalfSpace,
     InputError,
     Light,
     Mesh,
     NamedView,
     Part,
+    Phong,
+    Reflectance,
     Scene,
     Surface,
     UsageError,
     View,
+    demo,
     scene_of,
 )
 from autocolor.checks import either, listed
-from autocolor.scene.columns import Tier, keys_of
+from autocolor.scene.columns import Tier, difference, keys_of
 from autocolor.scene.creation import DISTANCE, SHARED, TURNS, new_light_of
 from autocolor.scene.defaults import MAPPING_FIELDS, object_coordinates
+from autocolor.scene.lights import Links
+from autocolor.scene.reflection_models import SpecularGrowth
 from autocolor.scene.scene import cost_of_edit
 from autocolor.scene.surfaces import MOST_SURFACES
 from autocolor.testing import scenes
-from tests.small import cube, grid
+from tests.small import cube, grid, wall_scene
 from tests.tables import refused
 
 PARTS = ("door", "hood", "pane")
@@ -383,3 +390,40 @@ def test_the_coordinates_of_the_object_follow_an_edit_of_the_stage(scene: Scene)
 def test_to_make_a_part_stage_costs_no_visible_surface_and_no_light() -> None:
     scene = scene_of(car())
     assert cost_of_edit(scene, scene.with_part("door", stage=True)) == Tier.MIX
+
+
+def test_as_in_1983_sets_what_the_paper_does_not_describe_and_nothing_else() -> None:
+    flap = Flap(0, 1, edge_width=0.2)
+    lamp = Light(
+        "lamp",
+        (0, -4, 2),
+        aim=(0, 0, 0),
+        cone_angle=30,
+        inner_angle=10,
+        falloff="linear",
+        reach=9,
+        flaps=Flaps(z=flap),
+        half_spaces=(HalfSpace("door", (0, 0, 0), (1, 0, 0)),),
+        links=Links(only_surfaces=("wall",)),
+    )
+    model = BlinnPhong(40.0, SpecularGrowth(refractive_index=1.5))
+    scene = wall_scene(
+        reflectance=Reflectance(0.7, 0.5, model),
+        lights=[lamp],
+        ambient=0.3,
+        interpolation="invariant",
+        mapping="gamma",
+        contrast="floor",
+        exposure="99.5 %",
+        dither="ordered",
+        words="normals",
+    )
+    paper = scene.as_in_1983()
+    of_levels = {"mapping", "contrast", "exposure", "dither", "words"}
+    assert set(difference(scene, paper)) == {"interpolation", "surfaces", "lights", *of_levels}
+    of_light = {"inner_angle", "falloff", "flaps", "half_spaces", "only_surfaces"}
+    assert set(difference(lamp, paper.lights[0])) == of_light
+    assert paper.surfaces[0].reflectance == Reflectance(0.7, 0.5, Phong(10.0))
+    assert paper.as_in_1983().equals(paper)
+    coupe = demo()
+    assert set(difference(coupe, coupe.as_in_1983())) == {"interpolation", "contrast", "exposure"}

@@ -17,7 +17,7 @@ import numpy as np
 
 from autocolor.checks import Vector
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scene import INVARIANT, Scene
+from autocolor.scene.scene import INVARIANT, LINEAR, Scene
 from autocolor.scene.surfaces import Reflectance
 from autocolor.scene.view import View
 
@@ -63,6 +63,7 @@ class Camera(NamedTuple):
     view: View
     lines: int
     elements: int
+    is_linear: bool = False
 
     @property
     def focal_length(self) -> float:
@@ -108,20 +109,21 @@ class LinePoint(NamedTuple):
     inverse_depth: float
     normal: Vector
 
-    def toward(self, other: LinePoint, fraction: float) -> LinePoint:
+    def toward(self, other: LinePoint, fraction: float, is_linear: bool) -> LinePoint:
         """The place at a fraction of the way to another in the picture.
 
-        The inverse depth is linear in the picture. The normal is linear on the surface, where the fraction is
-        the other's part of the inverse depth.
+        The inverse depth is linear in the picture. The normal is, too, if it `is_linear`; otherwise it is
+        linear on the surface, where the fraction is the other's part of the inverse depth.
         """
         inverse_depth = (1 - fraction) * self.inverse_depth + fraction * other.inverse_depth
-        on_surface = fraction * other.inverse_depth / inverse_depth
+        on_surface = fraction if is_linear else fraction * other.inverse_depth / inverse_depth
         x = self.x + fraction * (other.x - self.x)
         return LinePoint(x, inverse_depth, between(self.normal, other.normal, on_surface))
 
 
 def point_at(scene: Scene, camera: Camera, polygon: int, line: int, element: int) -> PointExplained:
     """The point of a polygon, a row of the polygon table counted from 0, that is seen at a pixel."""
+    camera = camera._replace(is_linear=scene.interpolation == LINEAR)
     mesh, part = scene.mesh, scene.parts[scene.mesh.part_numbers[polygon]]
     surface = next(row for row in scene.surfaces if row.name == part.surface)
     corners = [
@@ -197,7 +199,7 @@ def _found(
                 left, right = crossings
                 fraction = (element + 0.5 - left.x) / (right.x - left.x)
                 outside = max(-fraction, fraction - 1, 0.0) * (right.x - left.x)
-                at_pixel = left.toward(right, fraction)
+                at_pixel = left.toward(right, fraction, camera.is_linear)
                 is_outside = outside if outside > 1e-6 else 0.0
                 candidates.append((is_outside, -at_pixel.inverse_depth, is_behind, places, at_pixel))
         if candidates:
@@ -240,7 +242,7 @@ def crossings_of(piece: Sequence[Vertex], camera: Camera, y: float) -> list[Line
         if min(top, bottom) <= y < max(top, bottom):
             start = LinePoint(x, inverse_depth, one.normal)
             end = LinePoint(other_x, other_inverse_depth, other.normal)
-            crossings.append(start.toward(end, (y - top) / (bottom - top)))
+            crossings.append(start.toward(end, (y - top) / (bottom - top), camera.is_linear))
     return sorted(crossings, key=lambda each: each.x)
 
 
