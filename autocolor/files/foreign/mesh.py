@@ -121,7 +121,7 @@ def report_of(mesh: ForeignMesh, name: str, placement: Placement) -> MeshReport:
     return dataclasses.replace(report, material_of_part=mesh.material_of_part, materials=materials)
 
 
-RESULT: Final = ArrayFileKind("mesh of a library", REMEDY, ("autocolor mesh",), {})
+RESULT: Final = ArrayFileKind("mesh of a library", REMEDY, "autocolor mesh", {})
 """The file in which a mesh comes back."""
 
 
