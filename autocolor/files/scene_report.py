@@ -77,9 +77,9 @@ def scene_report(
     elif names:
         more = f" and {len(names) - 12} more" if len(names) > 12 else ""
         created.append(f"{len(names)} surfaces were created: {', '.join(map(repr, names[:12]))}{more}")
-    last = scene.surfaces[-1].name
+    last = scene.surfaces[-1].name if len(scene.surfaces) == MOST_SURFACES else ""
     sharing = sum(part.surface == last for part in scene.parts)
-    if len(scene.surfaces) == MOST_SURFACES and sharing > 1:
+    if last and sharing > 1:
         rule = f"because a scene has at most {MOST_SURFACES}"
         created.append(f"{sharing:,} parts share surface {last!r}, {rule}")
     return SceneReport(scene, tuple(repairs), tuple(created), mesh_files, no_view, no_lights)

@@ -76,7 +76,7 @@ def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, f
     squares += np.float32(square)
     close = CLOSE * max(square, radius**2)
     places = np.flatnonzero(squares <= close)
-    shortest = math.sqrt(max(float(squares.min()), close))
+    shortest = math.sqrt(max(float(squares.min()), close, LEAST_DISTANCE**2))
     length = np.sqrt(np.maximum(squares, np.float32(LEAST_DISTANCE**2), out=squares), out=squares)
     incidence /= length
     eye /= length

@@ -47,7 +47,7 @@ def test_what_stl_cannot_hold_is_listed(run: Run, folder: Path) -> None:
     assert converted.code == 0
     repaired, quads, wrote = converted.err.splitlines()
     assert repaired.startswith("autocolor: quad.obj: 1 node that no polygon uses was dropped")
-    assert quads.startswith("autocolor: quad.stl: left out, as STL cannot hold it: 1 quad ")
+    assert quads.startswith("autocolor: quad.stl: left out, as STL cannot hold it: the quads ")
     assert wrote == "wrote quad.stl"
     again = run("convert", "quad.stl", "again.stl", "--strict")
     assert (again.code, again.err) == (0, "wrote again.stl\n")

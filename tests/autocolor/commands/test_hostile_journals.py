@@ -33,7 +33,7 @@ def store(folder: Path) -> Path:
         ("show small.sqlite --to tcp://127.0.0.1:1", 65),
         ("tables small.sqlite", 65),
         ("convert small.sqlite out.obj", 65),
-        ("convert two.obj small.sqlite --force", 74),
+        ("convert two.obj small.sqlite --force", 65),
         ("sql small.sqlite", 65),
         (f"sql small.sqlite {UPDATE} --write", 65),
     ],

@@ -28,7 +28,7 @@ from autocolor.arrays import AnyArray
 from autocolor.budget import MEMORY, allowing
 from autocolor.images import averaged, display_image, smoothed
 from autocolor.lighting.picture import IntensityRange
-from autocolor.mapping.intensity import has_extent, levels_of, mapped_ranges
+from autocolor.mapping.intensity import has_extent, levels_of, mapped_ranges, stage_surfaces
 from autocolor.rendering import rendering
 from autocolor.scene.curves import mapping_curve
 from autocolor.testing import MAPPINGS, numbers, scenes
@@ -156,7 +156,7 @@ def test_the_legend_of_an_export_is_that_of_the_image(smooth: int) -> None:
 
 def held_exposure_of(scene: Scene, picture: Picture) -> Any:
     """The ranges of intensities that a page holds, by surface."""
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    extents = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene))
     scale = picture.scale
     return {
         picture.surfaces[number - 1]: (scale * extent.minimum, scale * extent.maximum)
@@ -189,7 +189,7 @@ def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     if scene.mapping == "equalize":
         # A page keeps the histogram that was exported.
         return
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure)
+    extents = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene))
     assume(all(has_extent(extent) for number, extent in extents.items() if number))
     others = {light.name: strength for light, strength in zip(scene.lights, strengths, strict=False)}
     other = relit(scene, held_exposure_of(scene, picture), others)
