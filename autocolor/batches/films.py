@@ -16,11 +16,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes
 from autocolor.batches.making import Batch, Source, batch_results, checked_batch
 from autocolor.batches.runs import Start
 from autocolor.batches.table import Result, Rows, Variant, variants_of
-from autocolor.budget import require_memory
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.settings import field_of, place_of, scene_with, value_at
@@ -37,10 +35,6 @@ FRAMES_PER_SECOND: Final = 24.0
 
 STREAM: Final = ".ramtek"
 FILMS: Final = (".webp", ".apng", ".gif")
-
-BYTES_OF_PIXEL: Final = 1.0
-"""Measured: an encoded frame of a WebP takes up to 0.32 bytes for each pixel. At its end, a film is in memory
-three times: as frames, as a whole, and as a file."""
 
 Progress = Callable[[Result], object]
 """A function that is called with the result of each frame."""
@@ -75,16 +69,15 @@ def animate(
 
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 
-    A frame costs its edit from the frame before. Memory is bounded, because each frame is written when it is
-    made; only a WebP and a stream are in memory until their end. `frames_per_second` is 0.1 to 100, and at
+    A frame costs its edit from the frame before. Memory is bounded, because frames are written as they are
+    made; only a stream is in memory until its end. `frames_per_second` is 0.1 to 100, and at
     most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are as in `render`.
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
     has the words of the first frame and then a load of the lookup table for each frame.
 
     Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
-    cannot be made, if a frame of a .ramtek file changes more than entries, or if a film needs more memory
-    than the budget allows. A film or a stream is then not written; numbered pictures that were finished stay.
-    Raises OutputError or WriteError if the file cannot be written.
+    cannot be made, or if a frame of a .ramtek file changes more than entries. A film or a stream is then not
+    written; numbered pictures that were finished stay. Raises OutputError or WriteError if the file cannot be written.
     """
     from ramtek_emu.films import write_film
 
@@ -118,7 +111,7 @@ def animate(
         with refusals_of_this_package():
             loss = write_film(
                 name,
-                _colors(_made(results, tell), len(variants) if kind == ".webp" else 0),
+                (result.image for result in _made(results, tell) if isinstance(result.image, np.ndarray)),
                 fields_per_second=frames_per_second,
                 loop=loop,
                 overwrite=overwrite,
@@ -162,20 +155,6 @@ def _made(results: Iterator[Result], tell: Progress) -> Iterator[Result]:
             raise InputError(f"frame {number}: {result.problem}")
         yield result
         tell(result)
-
-
-def _colors(results: Iterator[Result], in_memory: int) -> Iterator[Bytes]:
-    """The colors of frames. Raises InputError if `in_memory` encoded frames do not fit in memory."""
-    for result in results:
-        image = result.image
-        assert isinstance(image, np.ndarray)
-        if in_memory:
-            require_memory(
-                BYTES_OF_PIXEL * image.shape[0] * image.shape[1] * in_memory,
-                f"a WebP of {in_memory:,} frames",
-                "write .apng, or fewer or smaller frames",
-            )
-        yield image
 
 
 # Color cycling: one load of the lookup table a frame.
