@@ -77,7 +77,8 @@ def animate(
 
     Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
     cannot be made, or if a frame of a .ramtek file changes more than entries. A film or a stream is then not
-    written; numbered pictures that were finished stay. Raises OutputError or WriteError if the file cannot be written.
+    written; numbered pictures that were finished stay. Raises OutputError or WriteError if the file cannot be
+    written.
     """
     from ramtek_emu.films import write_film
 

@@ -203,7 +203,7 @@ def test_a_frame_that_cannot_be_made_is_named_and_nothing_is_written(name: str, 
     ("bad", "sentence"),
     [
         ({COLOR: "no"}, "frame 2: surface 'cube': object_color"),
-        ({"surfaces.no.blend": 1}, "frame 2: surfaces.no.blend: there is no surface"),
+        ({"ambient": None}, "frame 2: ambient: it must be a finite number"),
     ],
 )
 def test_a_frame_of_a_stream_that_cannot_be_made_is_named(

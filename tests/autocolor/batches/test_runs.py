@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 
 from autocolor import Picture, Scene, Variant, View, grid, image, render, scene_of
 from autocolor.batches import runs
-from autocolor.batches.order import cut, runs_of, tier_of
-from autocolor.batches.outputs import FORMS
-from autocolor.batches.runs import Drawing, Start, VariantTask, make, make_run
+from autocolor.batches.outputs import FORMS, marked
+from autocolor.batches.runs import Drawing, Start, VariantTask, cut, make, make_run, runs_of, tier_of
 from autocolor.batches.sheet import Box
 from autocolor.batches.table import variants_of
 from autocolor.files.settings import scene_with
@@ -140,10 +139,10 @@ def test_a_variant_that_exceeds_the_memory_budget_has_a_problem() -> None:
 
 def test_the_forms_and_thumbnails_are_those_of_the_colors() -> None:
     scene = wall_scene()
-    for form, each in FORMS.items():
+    for form in FORMS:
         drawing = SMALL._replace(form=form, level=9, thumbnail=Box(8, 6))
         made = make(Start(scene, None), drawing, VariantTask(0, {}, "0" * 64))
-        assert made.image == each.encoded(alone(scene), 9, "0" * 64)
+        assert made.image == marked(form, alone(scene), 9, "0" * 64)
         assert made.thumbnail is not None
         assert made.thumbnail.shape == (6, 8, 3)
 
