@@ -125,13 +125,13 @@ def kind_of(path: str) -> str:
     suffix = Path(path).suffix.lower()
     if suffix == ".png" and "{" not in path:
         raise UsageError(
-            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {path!r}; or end the"
-            " name in .apng for an animated PNG"
+            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {shown(path)}; or end"
+            " the name in .apng for an animated PNG"
         )
     if suffix not in (*FILMS, ".png", STREAM):
         raise UsageError(
             f"an animation must be written to .webp, .apng, .gif, frame-{{number:04}}.png or .ramtek, not to"
-            f" {path!r}; rename it"
+            f" {shown(path)}; rename it"
         )
     return suffix
 

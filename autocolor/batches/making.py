@@ -139,7 +139,7 @@ class Batch:
         try:
             while True:
                 for run in islice(runs, most - len(under_way)):
-                    with _working(RuntimeError):
+                    with _working(RuntimeError, CancelledError):
                         under_way.append((run, executor.submit(make_run, start, self.drawing, run)))
                 if not under_way:
                     return

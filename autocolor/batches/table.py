@@ -22,7 +22,7 @@ from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 from autocolor.arrays import Bytes
-from autocolor.checks import shown
+from autocolor.checks import brief, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.palette_file import read_palette
 from autocolor.files.paths import LONGEST_STEM, file_stem
@@ -303,7 +303,9 @@ def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
 def _axis(key: str, values: Iterable[object]) -> tuple[Variant, ...]:
     """The variants with each of some values for a key."""
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
-        raise UsageError(f"{key}: an axis must be a list of values, not {shown(values)}; write it as a list")
+        raise UsageError(
+            f"{brief(key)}: an axis must be a list of values, not {shown(values)}; write it as a list"
+        )
     return variants_of([{key: value} for value in islice(values, MOST_VARIANTS + 1)])
 
 
@@ -343,7 +345,7 @@ def check_keys(tables: Iterable[Iterable[Variant]]) -> None:
 # The text of `--vary`.
 
 NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-EVENLY: Final = re.compile(rf"\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*([0-9]{{1,7}})\s*")
+EVENLY: Final = re.compile(rf"\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*({NUMBER})\s*")
 
 PIECE: Final = re.compile(r""""(?:[^"\\]|\\.)*"?|'[^']*'?|[\[({]|[\])}]|,|[^"'\[({\])},]+""", re.DOTALL)
 """A piece of a list of values: a text in quotes, a bracket, a comma, anything else."""
@@ -376,16 +378,15 @@ def varied(text: str) -> tuple[Variant, ...]:
         for value in _split(values, key):
             rows += _of_palette(key, value[1:], names) if value.startswith("@") else [{key: value}]
         return variants_of(rows)
-    start, stop, count = float(evenly[1]), float(evenly[2]), int(evenly[3])
-    if not 2 <= count <= MOST_VARIANTS or not math.isfinite(start) or not math.isfinite(stop):
+    start, stop, count = map(float, evenly.groups())
+    is_count = count.is_integer() and 2 <= count <= MOST_VARIANTS
+    if not (is_count and math.isfinite(start) and math.isfinite(stop)):
         raise UsageError(
-            f"--vary {key}: START and STOP must be finite, and COUNT 2 to {MOST_VARIANTS:,}, not"
-            f" {shown(values)}; correct it"
+            f"--vary {brief(key)}: evenly spaced numbers must be START:STOP:COUNT, finite and with a whole"
+            f" COUNT from 2 to {MOST_VARIANTS:,}, not {shown(values)}; correct it"
         )
-    steps = count - 1
-    return variants_of(
-        [{key: float(f"{start + (stop - start) * step / steps:.12g}")} for step in range(count)]
-    )
+    shares = [step / (count - 1) for step in range(int(count))]
+    return variants_of([{key: float(f"{start * (1 - share) + stop * share:.12g}")} for share in shares])
 
 
 def _of_palette(key: str, path: str, names: _Names) -> list[dict[str, object]]:
@@ -410,8 +411,8 @@ def _split(text: str, key: str) -> list[str]:
     values.append(value.strip())
     if not all(values):
         raise UsageError(
-            f"--vary {key}: there must be a value before and after each comma, not {shown(text)}; leave a"
-            " comma out, or write none for a field without a value"
+            f"--vary {brief(key)}: there must be a value before and after each comma, not {shown(text)};"
+            " leave a comma out, or write none for a field without a value"
         )
     return values
 
@@ -430,7 +431,8 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     read = READERS.get(source.suffix.lower())
     if read is None:
         raise UsageError(
-            f"a table of variants must be a file that ends in .csv or .json, not {source.name}; rename it"
+            "a table of variants must be a file that ends in .csv or .json, not"
+            f" {brief(source.name)}; rename it"
         )
     rows = list(islice(read(read_bytes(source, LARGEST_TABLE), source.name), MOST_VARIANTS + 1))
     if not rows:

@@ -1,4 +1,4 @@
-"""Options that several commands share: `--normals`, `--paints`, `--size`, `--limit` and `-v`.
+"""Options that several commands share: `--normals`, `--hold-exposure`, `--paints`, `--size`, `-v` and others.
 
 An invalid value of an option is a UsageError, not an InputError.
 """
@@ -48,6 +48,13 @@ def with_normals(scene: Scene, normals: bool) -> Scene:
         return scene
     with as_usage("--normals: "):
         return scene.replace(words="normals")
+
+
+hold_option = click.option(
+    "--hold-exposure",
+    is_flag=True,
+    help="Hold the exposure that SCENE has without other options, so that less light is darker.",
+)
 
 
 def with_held_exposure(scene: Scene, picture: Picture) -> Scene:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, Final, NamedTuple
 
-from autocolor.checks import nearest
+from autocolor.checks import brief, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.text_table import value_of_text
 from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of
@@ -88,7 +88,7 @@ def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> ob
     default = None if field.default is None else field.default()
     # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
     if default is None or kind.to_plain(key, default).get(key) not in (None, {}):
-        raise UsageError(f"{key}: it {kind.rule()}, not none; only an optional field can be unset")
+        raise UsageError(f"{brief(key)}: it {kind.rule()}, not none; only an optional field can be unset")
     return default
 
 
@@ -113,9 +113,9 @@ def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
     for name in path[:-1]:
         fields = fields.setdefault(name, FieldsInside())
         if not isinstance(fields, FieldsInside):
-            raise UsageError(f"{key}: {name} is also set as a whole; leave one out")
+            raise UsageError(f"{brief(key)}: {name} is also set as a whole; leave one out")
     if isinstance(fields.get(path[-1]), FieldsInside):
-        raise UsageError(f"{key}: some of its fields are also set; leave one out")
+        raise UsageError(f"{brief(key)}: some of its fields are also set; leave one out")
     fields[path[-1]] = value
 
 
@@ -148,7 +148,7 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
     has_fields = isinstance(kind, (Nested, RowList))
     if kind is None or (field and not has_fields):
         wrong = table if kind is None else key
-        raise UsageError(f"{key}: there is no field {wrong!r}{nearest(table, kinds)}")
+        raise UsageError(f"{brief(key)}: there is no field {shown(wrong)}{nearest(table, kinds)}")
     if not has_fields or (key == table and fields_of(Scene)[table].is_optional):
         # A whole row can be set and unset, if it is optional.
         return SettingPlace("", "", (table,))
@@ -158,7 +158,7 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
         name, field = _name_and_rest(field, rows, key, kind.row_class)
         row = rows.get(name)
     if not field or (isinstance(kind, RowList) and row is None):
-        raise UsageError(f"{key}: it must name a field; write it as in {EXAMPLES[table]}")
+        raise UsageError(f"{brief(key)}: it must name a field; write it as in {EXAMPLES[table]}")
     path = tuple(field.split("."))
     named = None if row is None else fields_of(type(row)).get(path[0])
     is_name = isinstance(kind, RowList) and field == "name"
@@ -169,9 +169,9 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
         path = (path[0], inner_name, *(rest.split(".") if rest else ()))
         is_name = "name" in (inner, rest)
     if is_name:
-        raise UsageError(f"{key}: a name cannot be set; change it in the scene file")
+        raise UsageError(f"{brief(key)}: a name cannot be set; change it in the scene file")
     if len(path) > MOST_PARTS:
-        raise UsageError(f"{key}: there is no such field; write it as in {EXAMPLES[table]}")
+        raise UsageError(f"{brief(key)}: there is no such field; write it as in {EXAMPLES[table]}")
     return SettingPlace(table, name, path)
 
 
@@ -190,7 +190,7 @@ def _name_and_rest(text: str, names: Iterable[str], key: str, cls: type[Row]) ->
     wrong, _, rest = text.partition(".")
     if rest:
         advice = nearest(wrong, set(written.values())) or f"; add a {cls.noun} with all its keys in a table"
-        raise UsageError(f"{key}: there is no {cls.noun} {wrong!r}{advice}")
+        raise UsageError(f"{brief(key)}: there is no {cls.noun} {shown(wrong)}{advice}")
     return wrong, ""
 
 
