@@ -125,8 +125,8 @@ def kind_of(path: str) -> str:
     suffix = Path(path).suffix.lower()
     if suffix == ".png" and "{" not in path:
         raise UsageError(
-            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {shown(path)}; or end"
-            " the name in .apng for an animated PNG"
+            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {shown(path)}; or"
+            " end the name in .apng for an animated PNG"
         )
     if suffix not in (*FILMS, ".png", STREAM):
         raise UsageError(

@@ -278,7 +278,8 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
 
     Intensities are relative to the scale of the picture. The values: `held`, a sentence about the exposure;
     `exposure`, the ranges that it holds, as a value of a table; `ambient`; `rows` as `light_rows`, each with
-    its `units` and its `plane`; `levels`, the thresholds of each surface as float32, low byte first, by zlib; `dither`.
+    its `units` and its `plane`; `levels`, the thresholds of each surface as float32, low byte first, by zlib;
+    `dither`.
     """
     scene, picture = image.scene, image.picture
     if not image.has_light_in_words:
@@ -333,15 +334,13 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
 
 def _exposure_text(picture: Picture, extents: Mapping[int, IntensityRange]) -> str:
     """The ranges that are mapped, as a value of `exposure` in a table for `autocolor sweep`."""
-    names = {
-        WHOLE: OBJECT,
-        **{each.surface_number: picture.surfaces[each.surface_number - 1] for each in picture.slices},
-    }
-    ranges = [
-        f"{json.dumps(names[number], ensure_ascii=False)} = [{extent.minimum * picture.scale!r}, {extent.maximum * picture.scale!r}]"
-        for number, extent in extents.items()
-        if has_extent(extent) and (number == WHOLE or names[number] != OBJECT)
-    ]
+    ranges = []
+    for number, extent in extents.items():
+        name = picture.surfaces[number - 1] if number else OBJECT
+        # A surface with the name of the object's range has that range.
+        if has_extent(extent) and (number == WHOLE or name != OBJECT):
+            limits = extent.minimum * picture.scale, extent.maximum * picture.scale
+            ranges.append(f"{json.dumps(name, ensure_ascii=False)} = {[*limits]}")
     return f"{{ {', '.join(ranges)} }}"
 
 

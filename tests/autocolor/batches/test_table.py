@@ -259,8 +259,9 @@ def test_a_table_of_another_kind_and_a_large_file_are_refused(tmp_path: Path) ->
         (lambda: varied("a=" + "x" * ((1 << 20) + 1)), "--vary must be KEY=A,B,C"),
         (lambda: varied("name=a,b"), "--vary must be KEY=A,B,C"),
         (lambda: varied("a=1,,2"), "--vary a: there must be a value before and after each comma"),
-        (lambda: varied("a=0:1:1"), "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"),
-        (lambda: varied("a=0:1e999:3"), "--vary a: START and STOP must be finite"),
+        (lambda: varied("a=0:1:1"), "--vary a: evenly spaced numbers must be START:STOP:COUNT, finite and"),
+        (lambda: varied("a=0:2:0.5"), "--vary a: evenly spaced numbers must be START:STOP:COUNT"),
+        (lambda: varied("a=0:1e999:3"), "--vary a: evenly spaced numbers must be START:STOP:COUNT"),
     ],
 )
 def test_wrong_variants_are_refused(make: Callable[[], object], sentence: str) -> None:
@@ -286,3 +287,8 @@ def test_the_table_of_results_has_a_row_for_each_with_every_key(
         for key in keys:
             value = result.settings.get(key, "")
             assert row[key] == (json.dumps(value) if isinstance(value, list) else text_of(value))
+
+
+def test_evenly_spaced_numbers_may_be_as_far_apart_as_numbers_are() -> None:
+    values = [variant.settings["a"] for variant in varied("a=-1e308:1e308:5")]
+    assert values == [-1e308, -5e307, 0, 5e307, 1e308]

@@ -231,6 +231,18 @@ def test_saved_values_are_a_table_of_variants(
     assert (png == image(found, small)).all()
 
 
+def test_saved_values_with_other_light_have_the_exposure_of_the_page(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, tmp_path: Path
+) -> None:
+    for link, has_exposure in (("lights.key.intensity=0.3", True), ("surfaces.body.blend=0.25", False)):
+        page = opened(coupe, small, link, lights=True)
+        (tmp_path / "values.csv").write_bytes(saved(page, "Save CSV"))
+        (variant,) = autocolor.read_variants(tmp_path / "values.csv")
+        assert ("exposure" in variant.settings) == has_exposure
+        found = scene_with(coupe, variant.settings)
+        assert (found.exposure != "auto") == has_exposure
+
+
 def test_a_drag_is_one_step_and_the_link_has_the_colors(
     opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
 ) -> None:
