@@ -17,11 +17,11 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.batches.making import Batch, Source, batch_results, checked_batch
-from autocolor.batches.runs import Start
+from autocolor.batches.runs import Start, tier_of
 from autocolor.batches.table import Result, Rows, Variant, variants_of
-from autocolor.checks import shown
+from autocolor.checks import brief, shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.settings import field_of, place_of, scene_with, value_at
+from autocolor.files.settings import scene_with
 from autocolor.files.writing import refusals_of_this_package, refuse_output, write_atomically
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.rendering import sees_the_same
@@ -216,21 +216,12 @@ def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ..
     if first.words == other.words == NORMALS and sees_the_same(first, other):
         # Words stand for normals, so an edit of a light changes entries alone.
         return
-    tier, key = max(_costs(first, other, variants))
+    one, two = (dict(variants[place].settings) for place in (0, number - 1))
+    changed = [key for key in one | two if one.get(key) != two.get(key)]
+    tier, key = max((tier_of(first, key), key) for key in changed)
     is_light = tier in (Tier.MIX, Tier.LIGHT)
     by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
     raise InputError(
         f"frame {number}: a frame of a stream must change entries of the lookup table alone, and an edit of"
-        f" {key} computes {tier.computed} again; write a film such as .webp{by_normals}"
+        f" {brief(key)} computes {tier.computed} again; write a film such as .webp{by_normals}"
     )
-
-
-def _costs(first: Scene, other: Scene, variants: tuple[Variant, ...]) -> Iterator[tuple[Tier, str]]:
-    """The cost of each key whose values differ in two scenes, with the key."""
-    for key in {key for variant in variants for key in variant.settings}:
-        place = place_of(first, key)
-        field, one, two = field_of(place), value_at(first, place), value_at(other, place)
-        column = None if field is None else field.column
-        costs = Tier.FRAME if column is None else column.kind.cost(one, two, column.tier)
-        if costs is not None and not (one is two is None):
-            yield costs, key

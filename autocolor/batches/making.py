@@ -29,10 +29,10 @@ from autocolor.batches.outputs import (
     paths_of,
     same_file,
 )
-from autocolor.batches.runs import Drawing, Made, Start, VariantTask, cut, forget, make_run, runs_of, tier_of
+from autocolor.batches.runs import Drawing, Made, Start, VariantTask, cut, make_run, runs_of
 from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
-from autocolor.budget import allowed_memory, allowing, validated_limit
+from autocolor.budget import allowed_memory, validated_limit
 from autocolor.checks import brief, is_whole, shown
 from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.opening import is_picture, read_scene
@@ -41,22 +41,18 @@ from autocolor.files.settings import field_of, place_of, scene_with
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
 from autocolor.images import check_png_level
 from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
-from autocolor.rendering import LARGEST_RASTER, rendering
-from autocolor.scene.columns import Tier
+from autocolor.rendering import LARGEST_RASTER
 from autocolor.scene.scene import Scene, check_scene
 
 Source = Scene | SavedPicture | tuple[Scene, Picture] | str | PathLike[str]
 """What variants are made from: a scene, a scene with its picture, a picture that was read, or a path."""
 
-RUNS: Final = 16
-"""The most variants of a run, unless the caller chooses.
+VARIANTS_OF_RUN: Final = 16
+"""The most variants of a run.
 
 Measured: handing out the coupe's picture takes this process 1.6 ms for a run of one variant, and 0.2 ms a
 variant for runs of 16. With runs of 1, 4, 16 and 64, two processes take the same time within a tenth.
 """
-
-MOST_IN_RUN: Final = 10_000
-"""Limit: variants of a run."""
 
 BYTES_OF_RUN: Final = 1 << 28
 """Limit: bytes that a run returns; runs of large pictures are shorter."""
@@ -90,7 +86,6 @@ class Batch:
     base: str
     """The checksum of the scene, its picture and the drawing."""
     executor: Executor | None
-    runs: int
     ordered: bool
     overwrite: bool
     resume: bool
@@ -107,7 +102,7 @@ class Batch:
         if not missing:
             return
         # A small batch has at least a run for each worker.
-        most = max(1, min(self.runs, -(-len(missing) // (_workers(self.executor) or 1))))
+        most = min(self._most_in_run, -(-len(missing) // (_workers(self.executor) or 1)))
         rows = [self.variants[number] for number in missing]
         order = cut(range(len(missing)), most) if self.ordered else runs_of(self.scene, rows, most)
         runs = ([self._task(missing[place]) for place in run] for run in order)
@@ -115,6 +110,10 @@ class Batch:
         with closing(made):
             for each in made:
                 yield self._finished(each)
+
+    @property
+    def _most_in_run(self) -> int:
+        return max(1, min(VARIANTS_OF_RUN, BYTES_OF_RUN // self.drawing.bytes_of_picture))
 
     def _task(self, number: int) -> VariantTask:
         variant = self.variants[number]
@@ -132,8 +131,8 @@ class Batch:
 
         Raises UnavailableError if its workers end, or if it returns something else.
         """
-        start = Start(self.scene, self.picture if self.picture is not None else self._picture_of_all())
-        most = max(2, BYTES_UNDER_WAY // (self.drawing.bytes_of_picture * self.runs))
+        start = Start(self.scene, self.picture)
+        most = max(2, BYTES_UNDER_WAY // (self.drawing.bytes_of_picture * self._most_in_run))
         most = min(most, (_workers(executor) or WORKERS) + MORE_THAN_WORKERS)
         under_way: deque[tuple[list[VariantTask], Future[list[Made]]]] = deque()
         try:
@@ -155,17 +154,6 @@ class Batch:
         finally:
             for _, future in under_way:
                 future.cancel()
-            forget(start)
-
-    def _picture_of_all(self) -> Picture | None:
-        """The picture of all variants if they only recolor; otherwise None."""
-        keys = {key for variant in self.variants for key in variant.settings}
-        if any(key == "words" or tier_of(self.scene, key) >= Tier.MIX for key in keys):
-            return None
-        # If rendering fails, the result of each variant says why.
-        with suppress(InputError), allowing(self.drawing.limit):
-            return rendering(self.scene, *self.drawing.raster).picture
-        return None
 
     def _skipped(self, number: int) -> tuple[int, Result, Bytes | None]:
         """The result of a variant whose file is whole."""
@@ -191,9 +179,8 @@ class Batch:
     def _write(self, path: str, data: bytes) -> None:
         """Write a file and, if it is missing, its folder. Raises OutputError, WriteError."""
         _make_folder(path)
-        # Replace an earlier picture of a batch, or an empty file, which a power failure leaves if `sync` is
-        # false. Never replace any other file.
-        is_ours = self.resume and (mark_in(path, self.drawing.form) != "" or _is_empty(path))
+        # Replace an earlier picture of a batch, and never any other file.
+        is_ours = self.resume and mark_in(path, self.drawing.form) != ""
         write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
 
 
@@ -201,13 +188,6 @@ def _workers(executor: Executor | None) -> int | None:
     """How many workers an executor has; None if it does not say."""
     workers = getattr(executor, "_max_workers", None)
     return workers if isinstance(workers, int) and workers > 0 else None
-
-
-def _is_empty(path: str) -> bool:
-    """Whether there is a file without a byte at a path."""
-    with suppress(OSError):
-        return os.path.isfile(path) and os.path.getsize(path) == 0
-    return False
 
 
 def _make_folder(path: str | PathLike[str]) -> None:
@@ -313,7 +293,6 @@ def checked_batch(
     output: str | PathLike[str] | None,
     *,
     executor: Executor | None = None,
-    runs: int = RUNS,
     size: tuple[int, int] | None = None,
     smooth: int | None = None,
     form: str | None = None,
@@ -326,11 +305,6 @@ def checked_batch(
 ) -> Batch:
     """The checked batch. Raises the errors of `batch_results`, before anything is made."""
     form = form_of(output, form)
-    if not is_whole(runs, 1, MOST_IN_RUN):
-        raise UsageError(
-            f"runs must be a whole number from 1 to {MOST_IN_RUN:,}, not {shown(runs)}; give one such as"
-            f" {RUNS}"
-        )
     is_class = isinstance(executor, type)
     if executor is not None and (is_class or not callable(getattr(executor, "submit", None))):
         raise UsageError(
@@ -357,15 +331,13 @@ def checked_batch(
                 " --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
             )
     base = "" if form == ARRAY else base_mark(scene, picture, drawing.numbers)
-    most = max(1, min(runs, BYTES_OF_RUN // drawing.bytes_of_picture))
-    return Batch(scene, picture, rows, paths, drawing, base, executor, most, ordered, overwrite, resume, sync)
+    return Batch(scene, picture, rows, paths, drawing, base, executor, ordered, overwrite, resume, sync)
 
 
 class Options(TypedDict, total=False):
     """How a batch is made; see `batch`."""
 
     executor: Executor | None
-    runs: int
     size: tuple[int, int] | None
     smooth: int | None
     form: str | None

@@ -234,9 +234,9 @@ def marked(form: str, colors: Bytes, level: int | None, mark: str) -> bytes:
 
 
 def mark_in(path: str, form: str) -> str:
-    """The mark of a file, DAMAGED if its bytes before the mark are damaged; empty without a whole mark.
+    """The mark of a file, DAMAGED if its bytes before the mark are damaged; "" without a whole mark.
 
-    Measured: 0.1 ms for the coupe.
+    An empty file, which a power failure leaves after a write without `sync`, is damaged.
     """
     end = FORMS[form].end
     try:
@@ -244,6 +244,8 @@ def mark_in(path: str, form: str) -> str:
             start = max(0, file.seek(0, os.SEEK_END) - len(end(DIGITS * "0")))
             file.seek(start)
             tail = file.read()
+            if not tail:
+                return DAMAGED
             found = MARK.search(tail)
             if found is None or end(found[0].decode()) != tail:
                 return ""

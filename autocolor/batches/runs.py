@@ -15,7 +15,7 @@ import secrets
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from itertools import groupby, pairwise
+from itertools import groupby
 from threading import get_ident
 from typing import Final, NamedTuple
 
@@ -135,11 +135,6 @@ _ARRIVED: Final[dict[str, Start]] = {}
 """The start of the batch that this process works at for another, by its token."""
 
 
-def forget(start: Start) -> None:
-    """Forget the start of a batch that ended: threads of this process may have unpickled a copy."""
-    _ARRIVED.pop(start.token, None)
-
-
 def _arrived(token: str, pickled: bytes) -> Start:
     """The start of a batch in the process of a worker."""
     start = _ARRIVED.get(token)
@@ -199,16 +194,12 @@ def runs_of(scene: Scene, variants: Sequence[Variant], most: int) -> list[list[i
 
 
 def cut(numbers: Sequence[int], most: int) -> list[list[int]]:
-    """Consecutive runs of at most `most` numbers, whose lengths differ by at most 1.
+    """Consecutive runs of at most `most` numbers.
 
     >>> cut([0, 1, 2, 3, 4], 4)
-    [[0, 1, 2], [3, 4]]
+    [[0, 1, 2, 3], [4]]
     """
-    count = max(1, -(-len(numbers) // most))
-    ends = [len(numbers) * place // count for place in range(count + 1)]
-    # The longer runs are the first.
-    ends = [len(numbers) - end for end in reversed(ends)]
-    return [list(numbers[start:end]) for start, end in pairwise(ends)]
+    return [list(numbers[start : start + most]) for start in range(0, len(numbers), most)]
 
 
 def _columns(scene: Scene, variants: Sequence[Variant]) -> list[tuple[Tier, list[int]]]:

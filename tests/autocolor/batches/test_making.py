@@ -41,7 +41,6 @@ from autocolor.batches.making import MORE_THAN_WORKERS, VariantWarning
 from autocolor.batches.outputs import SHEET_MARK, mark_in
 from autocolor.batches.table import Result, Variant, variants_of
 from autocolor.files.settings import scene_with
-from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from tests.small import wall_scene
 
@@ -54,6 +53,12 @@ GRID = grid(
     }
 )
 PAINTS = grid({"surfaces.wall.object_color": [[n, 255 - n, 128] for n in range(0, 250, 10)]})
+
+
+@pytest.fixture
+def alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of one variant."""
+    monkeypatch.setattr(making, "VARIANTS_OF_RUN", 1)
 
 
 class Reversed(Executor):
@@ -116,25 +121,8 @@ def test_any_executor_gives_the_same_bytes() -> None:
     scene = wall_scene()
     expected = images(batch(scene, GRID, size=SIZE, form="png"))
     with ThreadPoolExecutor(3) as threads:
-        assert images(batch(scene, GRID, size=SIZE, form="png", executor=threads, runs=2)) == expected
-    assert images(batch(scene, GRID, size=SIZE, form="png", executor=Reversed(), runs=1)) == expected
-
-
-@pytest.mark.parametrize(("rows", "count"), [(PAINTS, 1), (GRID, 0)])
-def test_a_picture_is_rendered_here_for_an_executor_if_it_is_the_picture_of_all_variants(
-    monkeypatch: pytest.MonkeyPatch, rows: tuple[Variant, ...], count: int
-) -> None:
-    rendered = []
-
-    def counted(scene: Scene, lines: int, elements: int) -> Rendering:
-        rendered.append(rendering(scene, lines, elements))
-        return rendered[-1]
-
-    monkeypatch.setattr(making, "rendering", counted)
-    with ThreadPoolExecutor(1) as threads:
-        results = batch(wall_scene(), rows, size=SIZE, executor=threads)
-    assert len(rendered) == count
-    assert [result.tier for result in results].count(Tier.FRAME) == (0 if count else 2)
+        assert images(batch(scene, GRID, size=SIZE, form="png", executor=threads)) == expected
+    assert images(batch(scene, GRID, size=SIZE, form="png", executor=Reversed())) == expected
 
 
 @pytest.mark.filterwarnings("ignore::autocolor.batches.making.VariantWarning")
@@ -146,7 +134,7 @@ def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None
         for given, rows in ((scene, variants), (scene, PAINTS), (source, PAINTS)):
             size = SIZE if given is scene else None
             here = batch(given, rows, size=size, form="webp")
-            there = batch(given, rows, size=size, form="webp", executor=processes, runs=4)
+            there = batch(given, rows, size=size, form="webp", executor=processes)
             assert [result.image for result in there] == [result.image for result in here]
             assert [result.problem for result in there] == [result.problem for result in here]
 
@@ -163,13 +151,13 @@ def test_a_cluster_of_dask_gives_the_same_bytes() -> None:
         client.get_executor() as executor,
     ):
         for rows in (GRID, PAINTS):
-            there = batch(scene, rows, size=SIZE, form="png", executor=executor, runs=3)
+            there = batch(scene, rows, size=SIZE, form="png", executor=executor)
             assert images(there) == images(batch(scene, rows, size=SIZE, form="png"))
 
 
 @pytest.mark.parametrize("executor", [None, Reversed()])
 def test_ordered_results_come_in_the_order_of_the_variants(executor: Executor | None) -> None:
-    results = list(batch_results(wall_scene(), GRID, size=SIZE, ordered=True, runs=2, executor=executor))
+    results = list(batch_results(wall_scene(), GRID, size=SIZE, ordered=True, executor=executor))
     assert [result.name for result in results] == [variant.name for variant in GRID]
     if executor is None:
         # The last key of the grid, the view, changes each time.
@@ -177,11 +165,12 @@ def test_ordered_results_come_in_the_order_of_the_variants(executor: Executor | 
 
 
 @pytest.mark.parametrize("ordered", [False, True])
+@pytest.mark.usefixtures("alone")
 def test_an_executor_has_a_few_more_runs_than_workers_however_many_variants_there_are(ordered: bool) -> None:
     executor = Reversed()
     count = 0
     rows = unnamed(PAINTS * 4)
-    for _ in batch_results(wall_scene(), rows, size=SIZE, executor=executor, runs=1, ordered=ordered):
+    for _ in batch_results(wall_scene(), rows, size=SIZE, executor=executor, ordered=ordered):
         count += 1
         assert len(executor.pending) <= executor._max_workers + MORE_THAN_WORKERS
     assert count == 100
@@ -199,10 +188,11 @@ def unnamed(variants: tuple[Variant, ...]) -> list[dict[str, object]]:
     return [dict(variant.settings) for variant in variants]
 
 
+@pytest.mark.usefixtures("alone")
 def test_a_batch_that_is_closed_cancels_what_waits_and_leaves_whole_files(tmp_path: Path) -> None:
     executor = Reversed()
     results = batch_results(
-        wall_scene(), PAINTS, tmp_path / "{number}.png", size=SIZE, executor=executor, runs=1, ordered=True
+        wall_scene(), PAINTS, tmp_path / "{number}.png", size=SIZE, executor=executor, ordered=True
     )
     first = list(itertools.islice(results, 3))
     results.close()
@@ -441,7 +431,6 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     scene = wall_scene()
     yield {"output": "same.png"}, UsageError, "a name pattern must give each variant a file of its own"
     yield {"output": "a.jpg"}, UsageError, "the pictures of a batch must be written to files that end in"
-    yield {"runs": 0}, UsageError, "runs must be a whole number from 1 to 10,000, not 0"
     yield {"executor": 2}, UsageError, "an executor must be one of concurrent.futures or the like, not 2"
     yield {"size": (16,)}, UsageError, "the size of pictures must be elements and lines, each from 1 to 16384"
     yield {"size": (16, 9999), "smooth": 2}, UsageError, "the size of pictures must be elements and lines"
