@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from autocolor.checks import brief
 from autocolor.errors import InputError, UsageError
 from autocolor.files.opening import (
     TWO_TABLES,
@@ -108,7 +109,7 @@ def test_a_file_that_needs_more_memory_than_the_limit_is_refused(folder: Path) -
 
 def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
     for name in ("none", "none.obj", "none.toml", "none.npz", "none/none.obj"):
-        sentence = f"{tmp_path / name}: there is no such file or folder; check the name"
+        sentence = f"{brief(str(tmp_path / name))}: there is no such file or folder; check the name"
         assert refusal(read_scene, tmp_path / name) == sentence
     assert refusal(read_scene, tmp_path) == (
         f"{tmp_path}: a scene's folder must contain a scene.toml or nodes.csv and polygons.csv or nodes.npy"
