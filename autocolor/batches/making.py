@@ -327,8 +327,8 @@ def checked_batch(
         if existing:
             others = f" and {len(existing) - 1:,} more, which exist" if existing[1:] else ", which exists"
             raise OutputError(
-                f"the pictures of a batch must be new files, not {brief(existing[0])}{others}; resume the batch"
-                " with --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
+                f"the pictures of a batch must be new files, not {brief(existing[0])}{others}; resume the"
+                " batch with --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
             )
     base = "" if form == ARRAY else base_mark(scene, picture, drawing.numbers)
     return Batch(scene, picture, rows, paths, drawing, base, executor, ordered, overwrite, resume, sync)

@@ -58,8 +58,8 @@ def test_a_name_of_no_file_is_refused(tmp_path: Path) -> None:
     advice = "; check the name and its permissions"
     for path, sentence in (
         (Path("a\0b.obj"), "a file name must be valid on this system, not 'a\\x00b.obj'; correct it"),
-        (Path("a" * 300), f"{'a' * 300}: it cannot be read (file name too long){advice}"),
-        (loop, f"{loop}: it cannot be read (too many levels of symbolic links){advice}"),
+        (Path("a" * 300), f"{'a' * 38}...{'a' * 38}: it cannot be read (file name too long){advice}"),
+        (loop, f"{brief(str(loop))}: it cannot be read (too many levels of symbolic links){advice}"),
         (none, f"{brief(str(none))}: there is no such file or folder; check the name"),
     ):
         assert refusal(read_bytes, path, 100) == sentence
