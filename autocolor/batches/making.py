@@ -33,7 +33,7 @@ from autocolor.batches.runs import Drawing, Made, Start, VariantTask, cut, make_
 from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
 from autocolor.budget import allowed_memory, validated_limit
-from autocolor.checks import brief, is_whole, shown
+from autocolor.checks import brief, is_whole, nearest, shown
 from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.opening import is_picture, read_scene
 from autocolor.files.picture_file import SavedPicture, read_picture
@@ -74,6 +74,20 @@ class VariantWarning(UserWarning):
     """A variant of a batch could not be made; the others are."""
 
 
+class Options(TypedDict, total=False):
+    """How a batch is made; see `batch`."""
+
+    executor: Executor | None
+    size: tuple[int, int] | None
+    smooth: int | None
+    form: str | None
+    level: int | None
+    sync: bool
+    overwrite: bool
+    resume: bool
+    ordered: bool
+
+
 @dataclass(frozen=True)
 class Batch:
     """A checked batch: what to make, how, where, and by whom."""
@@ -85,28 +99,27 @@ class Batch:
     drawing: Drawing
     base: str
     """The checksum of the scene, its picture and the drawing."""
-    executor: Executor | None
-    ordered: bool
-    overwrite: bool
-    resume: bool
-    sync: bool
+    options: Options
 
     def results(self) -> Generator[tuple[int, Result, Bytes | None], None, None]:
         """The number, the result and the thumbnail of each variant: whole files first, then new pictures."""
         missing = []
         for number, variant in enumerate(self.variants):
-            if self.resume and mark_in(self.paths[number], self.drawing.form) == mark_of(self.base, variant):
+            mark = mark_in(self.paths[number], self.drawing.form) if self.options.get("resume") else ""
+            if mark and mark == mark_of(self.base, variant):
                 yield self._skipped(number)
             else:
                 missing.append(number)
         if not missing:
             return
         # A small batch has at least a run for each worker.
-        most = min(self._most_in_run, -(-len(missing) // (_workers(self.executor) or 1)))
+        executor = self.options.get("executor")
+        most = min(self._most_in_run, -(-len(missing) // (_workers(executor) or 1)))
         rows = [self.variants[number] for number in missing]
-        order = cut(range(len(missing)), most) if self.ordered else runs_of(self.scene, rows, most)
+        is_ordered = self.options.get("ordered")
+        order = cut(range(len(missing)), most) if is_ordered else runs_of(self.scene, rows, most)
         runs = ([self._task(missing[place]) for place in run] for run in order)
-        made = self._made_here(runs) if self.executor is None else self._made_by(self.executor, runs)
+        made = self._made_here(runs) if executor is None else self._made_by(executor, runs)
         with closing(made):
             for each in made:
                 yield self._finished(each)
@@ -180,8 +193,9 @@ class Batch:
         """Write a file and, if it is missing, its folder. Raises OutputError, WriteError."""
         _make_folder(path)
         # Replace an earlier picture of a batch, and never any other file.
-        is_ours = self.resume and mark_in(path, self.drawing.form) != ""
-        write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
+        overwrites = self.options.get("overwrite", False)
+        is_ours = self.options.get("resume", False) and mark_in(path, self.drawing.form) != ""
+        write_atomically(path, data, overwrite=overwrites or is_ours, sync=self.options.get("sync", True))
 
 
 def _workers(executor: Executor | None) -> int | None:
@@ -241,15 +255,9 @@ def _source(source: Source) -> tuple[Scene, Picture | None]:
     return source, None
 
 
-def _drawing(
-    picture: Picture | None,
-    size: tuple[int, int] | None,
-    smooth: int | None,
-    form: str,
-    level: int | None,
-    thumbnail: Box | None,
-) -> Drawing:
+def _drawing(picture: Picture | None, form: str, thumbnail: Box | None, options: Options) -> Drawing:
     """How to draw the pictures of a batch. Raises UsageError for a wrong or contradicting size."""
+    size, smooth, level = options.get("size"), options.get("smooth"), options.get("level")
     if smooth is not None:
         check_smooth(smooth)
     check_png_level(level)
@@ -291,27 +299,23 @@ def checked_batch(
     source: Source,
     variants: Rows,
     output: str | PathLike[str] | None,
-    *,
-    executor: Executor | None = None,
-    size: tuple[int, int] | None = None,
-    smooth: int | None = None,
-    form: str | None = None,
-    level: int | None = None,
-    sync: bool = True,
-    overwrite: bool = False,
-    resume: bool = False,
-    ordered: bool = False,
     thumbnail: Box | None = None,
+    **options: Unpack[Options],
 ) -> Batch:
     """The checked batch. Raises the errors of `batch_results`, before anything is made."""
-    form = form_of(output, form)
+    for name in options:
+        if name not in Options.__annotations__:
+            raise UsageError(
+                f"there is no option {shown(name)} of a batch{nearest(name, Options.__annotations__)}"
+            )
+    form, executor = form_of(output, options.get("form")), options.get("executor")
     is_class = isinstance(executor, type)
     if executor is not None and (is_class or not callable(getattr(executor, "submit", None))):
         raise UsageError(
             f"an executor must be one of concurrent.futures or the like, not {shown(executor)}; leave it out"
             " for this process"
         )
-    if resume and output is None:
+    if options.get("resume") and output is None:
         raise UsageError("only a batch with an output can be resumed; give a name pattern as output")
     rows = variants_of(variants)
     if not rows:
@@ -320,9 +324,9 @@ def checked_batch(
         )
     scene, picture = _source(source)
     check_keys(scene, rows)
-    drawing = _drawing(picture, size, smooth, form, level, thumbnail)
+    drawing = _drawing(picture, form, thumbnail, options)
     paths = () if output is None else paths_of(output, scene, rows)
-    if not (overwrite or resume):
+    if not (options.get("overwrite") or options.get("resume")):
         existing = [path for path in paths if os.path.lexists(path)]
         if existing:
             others = f" and {len(existing) - 1:,} more, which exist" if existing[1:] else ", which exists"
@@ -331,21 +335,7 @@ def checked_batch(
                 " batch with --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
             )
     base = "" if form == ARRAY else base_mark(scene, picture, drawing.numbers)
-    return Batch(scene, picture, rows, paths, drawing, base, executor, ordered, overwrite, resume, sync)
-
-
-class Options(TypedDict, total=False):
-    """How a batch is made; see `batch`."""
-
-    executor: Executor | None
-    size: tuple[int, int] | None
-    smooth: int | None
-    form: str | None
-    level: int | None
-    sync: bool
-    overwrite: bool
-    resume: bool
-    ordered: bool
+    return Batch(scene, picture, rows, paths, drawing, base, options)
 
 
 def batch_results(
@@ -423,7 +413,8 @@ def batch(
             if same_file(path) in map(same_file, checked.paths):
                 raise UsageError(f"{what} must have a file of its own, not {path}, a picture's; rename it")
             _make_folder(path)
-            refuse_output(path, overwrite=checked.overwrite or (checked.resume and _is_of_batch(path)))
+            is_ours = options.get("resume", False) and _is_of_batch(path)
+            refuse_output(path, overwrite=options.get("overwrite", False) or is_ours)
     results: dict[int, Result] = {}
     try:
         with closing(checked.results()) as made:

@@ -195,22 +195,17 @@ def form_of(output: str | os.PathLike[str] | None, form: str | None) -> str:
 
     Raises UsageError for an unknown form, and for a form beside an output.
     """
-    if output is None:
-        if form is not None and form not in (ARRAY, *FORMS):
-            raise UsageError(f"the form of pictures must be {either([ARRAY, *FORMS])}, not {shown(form)}")
-        return form or ARRAY
-    suffix = Path(output).suffix.lower()
     forms = {each.suffix: name for name, each in FORMS.items()}
-    if suffix not in forms:
+    own = (form or ARRAY) if output is None else forms.get(Path(output).suffix.lower(), "")
+    if output is not None and not own:
         raise UsageError(
             f"the pictures of a batch must be written to files that end in {' or '.join(forms)}, not to"
             f" {shown(str(output))}; rename them"
         )
-    if form not in (None, forms[suffix]):
-        raise UsageError(
-            f"the suffix of {brief(str(output))} must belong to the form {shown(form)}; leave the form out"
-        )
-    return forms[suffix]
+    if own not in (ARRAY, *FORMS) or form not in (None, own):
+        rule = either([ARRAY, *FORMS]) if output is None else f"that of the output, {own!r}"
+        raise UsageError(f"the form of pictures must be {rule}, not {shown(form)}; leave it out")
+    return own
 
 
 # Marks.

@@ -210,7 +210,8 @@ def start_of(
         print_log(click.get_current_context())
         saved = read_picture(source.path)
         original = with_held_exposure(saved.scene, saved.picture) if hold else saved.scene
-        return saved._replace(scene=recolored(original, None, {}, settings)), 0
+        edited = recolored(original, None, {}, settings) if settings else original
+        return saved._replace(scene=edited), 0
     scene, report = read_edited(source, settings, size, prepared)
     return scene, ended(report, source)
 

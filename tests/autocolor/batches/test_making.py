@@ -457,6 +457,11 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     yield {"variants": [{}, {"surfaces.wal.blend": 1}]}, UsageError, unknown
     unknown = "surfaces.wall.blnd: surface 'wall': there is no field 'blnd'; did you mean 'blend'?"
     yield {"variants": [{}, {"surfaces.wall.blnd": 1}]}, UsageError, unknown
+    yield (
+        {"overwite": True},
+        UsageError,
+        "there is no option 'overwite' of a batch; did you mean 'overwrite'?",
+    )
     yield {"columns": 3}, UsageError, "columns are for a contact sheet; give a sheet, or leave them out"
     yield {"variants": "red"}, UsageError, "variants must be a list of tables or of Variants, not 'red'"
 

@@ -94,7 +94,7 @@ def test_the_suffix_gives_the_form_and_a_form_without_an_output_is_taken() -> No
             None,
             "the pictures of a batch must be written to files that end in .png or .webp, not to 'a.jpg'",
         ),
-        ("a.png", "webp", "the suffix of a.png must belong to the form 'webp'; leave the form out"),
+        ("a.png", "webp", "the form of pictures must be that of the output, 'png', not 'webp'; leave it out"),
         (None, "jpg", "the form of pictures must be 'array', 'png' or 'webp', not 'jpg'"),
     ],
 )
