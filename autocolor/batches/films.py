@@ -5,9 +5,9 @@ docs/guides/paint.md shows each. `ramtek_emu.films` writes the films.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
-from contextlib import closing, contextmanager
+from contextlib import closing
 from io import BytesIO
 from numbers import Real
 from os import PathLike, fspath
@@ -178,12 +178,6 @@ def _stream(
             "a stream must have smooth=1, because a display cannot average; leave it out, or render the"
             " picture file with --smooth 1"
         )
-    first: Scene | None = None
-    for number, variant in enumerate(variants, 1):
-        with _naming(number):
-            scene = scene_with(batch.scene, variant.settings)
-        first = first or scene
-        _check_entries_alone(first, scene, variants, number)
     file = BytesIO()
     send_cycle(Recorder(file), _images(batch, tell))
     write_atomically(path, file.getvalue(), overwrite=overwrite)
@@ -191,37 +185,34 @@ def _stream(
 
 
 def _images(batch: Batch, tell: Progress) -> Iterator[DisplayImage]:
-    """The display images of the variants of a batch."""
+    """The display images of frames that change entries alone. Raises InputError, with the frame."""
     start = Start(batch.scene, batch.picture)
+    first: Scene | None = None
     for number, variant in enumerate(batch.variants, 1):
-        with _naming(number):
+        try:
+            scene = scene_with(batch.scene, variant.settings)
+            first = first or scene
+            _check_entries_alone(first, scene, batch.variants[0].settings, variant.settings)
             image, tier = start.image_of(variant.settings, batch.drawing)
+        except (InputError, UsageError) as error:
+            raise InputError(f"frame {number}: {problem}" for problem in error.problems) from None
         yield image
         tell(Result(variant.name, variant.settings, tier=tier))
 
 
-@contextmanager
-def _naming(number: int) -> Iterator[None]:
-    """Raise an InputError with the number of the frame for a frame that cannot be made."""
-    try:
-        yield
-    except (InputError, UsageError) as error:
-        raise InputError(f"frame {number}: {problem}" for problem in error.problems) from None
-
-
-def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ...], number: int) -> None:
-    """Raise InputError, with the key, if a frame changes more than entries of the lookup table."""
+def _check_entries_alone(
+    first: Scene, other: Scene, one: Mapping[str, object], two: Mapping[str, object]
+) -> None:
+    """Raise InputError, with the key, if two frames, with their settings, differ in more than entries."""
     if not costs_at_least(first, other, Tier.LEVELS):
         return
     if first.words == other.words == NORMALS and sees_the_same(first, other):
         # Words stand for normals, so an edit of a light changes entries alone.
         return
-    one, two = (dict(variants[place].settings) for place in (0, number - 1))
-    changed = [key for key in one | two if one.get(key) != two.get(key)]
-    tier, key = max((tier_of(first, key), key) for key in changed)
+    tier, key = max((tier_of(first, key), key) for key in {*one, *two} if one.get(key) != two.get(key))
     is_light = tier in (Tier.MIX, Tier.LIGHT)
     by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
     raise InputError(
-        f"frame {number}: a frame of a stream must change entries of the lookup table alone, and an edit of"
+        "a frame of a stream must change entries of the lookup table alone, and an edit of"
         f" {brief(key)} computes {tier.computed} again; write a film such as .webp{by_normals}"
     )
