@@ -20,7 +20,7 @@ PUBLIC_NAMES = {
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "Variant", "View", "WriteError", "animate", "batch",
+        "UnavailableError", "UsageError", "Variant", "VariantWarning", "View", "WriteError", "animate", "batch",
         "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal", "read_palette",
         "read_picture", "read_rig", "read_scene", "read_variants", "render", "save_image", "save_layers",
         "save_page", "save_words", "scene_of", "send_picture", "write_palette", "write_picture", "write_rig",

@@ -114,7 +114,8 @@ class Batch:
             return
         # A small batch has at least a run for each worker.
         executor = self.options.get("executor")
-        most = min(self._most_in_run, -(-len(missing) // (_workers(executor) or 1)))
+        most = min(VARIANTS_OF_RUN, -(-len(missing) // (_workers(executor) or 1)))
+        most = max(1, min(most, BYTES_OF_RUN // self.drawing.bytes_of_picture))
         rows = [self.variants[number] for number in missing]
         is_ordered = self.options.get("ordered")
         order = cut(range(len(missing)), most) if is_ordered else runs_of(self.scene, rows, most)
@@ -123,10 +124,6 @@ class Batch:
         with closing(made):
             for each in made:
                 yield self._finished(each)
-
-    @property
-    def _most_in_run(self) -> int:
-        return max(1, min(VARIANTS_OF_RUN, BYTES_OF_RUN // self.drawing.bytes_of_picture))
 
     def _task(self, number: int) -> VariantTask:
         variant = self.variants[number]
@@ -145,7 +142,7 @@ class Batch:
         Raises UnavailableError if its workers end, or if it returns something else.
         """
         start = Start(self.scene, self.picture)
-        most = max(2, BYTES_UNDER_WAY // (self.drawing.bytes_of_picture * self._most_in_run))
+        most = max(2, BYTES_UNDER_WAY // (self.drawing.bytes_of_picture * VARIANTS_OF_RUN))
         most = min(most, (_workers(executor) or WORKERS) + MORE_THAN_WORKERS)
         under_way: deque[tuple[list[VariantTask], Future[list[Made]]]] = deque()
         try:
@@ -379,7 +376,7 @@ def batch(
     The options:
 
     - `executor`: any executor of concurrent.futures, also Dask's `Client.get_executor()`; by default this
-      process does the work. Runs of at most `runs` variants travel to it, at least a run for each worker.
+      process does the work. Runs of variants travel to it, at least a run for each worker.
     - `size`, by default (640, 480), and `smooth`, by default 1, as in `render`; a picture has its own.
     - `level`: the compression of PNG files, 0 to 9; `sync=False` as in `save_image`.
     - `resume`: skip each variant whose file is whole and was made from the same scene or picture and the
@@ -392,8 +389,8 @@ def batch(
 
     A variant that cannot be made has a `problem` in its result, is told by a VariantWarning, and loses no
     other. Raises UsageError for a wrong argument, a key that the scene does not have, and arrays that exceed
-    the memory budget; InputError for an invalid source, and if no variant can be made; OutputError if
-    a file exists; WriteError if a file cannot be written; UnavailableError if the executor fails.
+    the memory budget; InputError for an invalid source, and if no variant can be made; OutputError if a file
+    exists; WriteError if a file cannot be written; UnavailableError if the executor fails.
     """
     rows = variants_of(variants)
     if columns is not None and sheet is None:
@@ -435,9 +432,7 @@ def batch(
     sentences = [f"{brief(result.name)}: {line}" for result in failed for line in result.problem.splitlines()]
     if len(failed) == len(rows):
         more = len(sentences) - PROBLEMS_SHOWN
-        raise InputError(
-            [*sentences[:PROBLEMS_SHOWN], *([f"and {more:,} problems more"] if more > 0 else [])]
-        )
+        raise InputError(sentences[:PROBLEMS_SHOWN] + [f"and {more:,} problems more"] * (more > 0))
     for sentence in sentences:
         warnings.warn(sentence, VariantWarning, stacklevel=2)
     return in_order
