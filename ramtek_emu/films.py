@@ -265,9 +265,6 @@ ANIMATED: Final = 0x02
 HAS_ALPHA: Final = 0x10
 """The flags in VP8X of an animation, and of fields with transparent pixels, which show the field before."""
 
-NO_BLEND: Final = 0x02
-"""The flag in ANMF of a field that replaces the field before."""
-
 
 class _TimedField(NamedTuple):
     """A field with its duration in milliseconds."""
@@ -303,7 +300,7 @@ def _webp_fields(group: list[_TimedField], size: bytes) -> tuple[bytes, int]:
         return fields, dict(chunks)[b"VP8X"][0] & HAS_ALPHA
     # Pillow writes a still picture, whose chunk is the data of the field.
     (chunk,) = chunks
-    place = bytes(6) + size + pack("<I", durations[0])[:3] + bytes([NO_BLEND])
+    place = bytes(6) + size + pack("<I", durations[0])[:3] + bytes(1)
     return _riff_chunk(b"ANMF", place + _riff_chunk(*chunk)), 0
 
 

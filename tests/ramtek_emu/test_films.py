@@ -213,6 +213,18 @@ def test_a_webp_is_written_in_groups_of_fields(tmp_path: Path, monkeypatch: pyte
     assert written == 3
 
 
+def test_a_webp_says_whether_fields_have_transparent_pixels(tmp_path: Path) -> None:
+    for count in (1, 2):
+        fields = [noise(1)[0].copy() for _ in range(count)]
+        fields[-1][3, 4] = fields[-1][15, 20] = 0
+        write_film(tmp_path / "film.webp", fields, fields_per_second=10, overwrite=True)
+        first, *others = map(Image.fromarray, fields)
+        first.save(tmp_path / "other.webp", save_all=True, append_images=others, lossless=True, method=0)
+        flags = (tmp_path / "film.webp").read_bytes()[20]
+        # The flag of transparent pixels is 16, and that of an animation 2.
+        assert flags == (tmp_path / "other.webp").read_bytes()[20] == 18 if others else flags == 2
+
+
 def test_a_webp_ends_at_its_largest_size(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ramtek_emu.films.LARGEST_RIFF", 5000)
     with pytest.raises(OutputError, match="a WebP must have at most 4 GB, not more"):

@@ -15,6 +15,7 @@ from autocolor import (
     InputError,
     Light,
     Scene,
+    Surface,
     UsageError,
     image,
     read_picture,
@@ -182,6 +183,14 @@ def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     expected = display_image(other, render(other, *SIZE)).words
     assert (relit_words(values, others, -1) <= expected).all()
     assert (expected <= relit_words(values, others, 1)).all()
+
+
+def test_a_surface_with_the_name_of_the_range_of_the_object_has_that_range() -> None:
+    scene = wall_scene()
+    parts = tuple(part.replace(surface="object") for part in scene.parts)
+    scene = scene.replace(surfaces=(Surface("object"),), parts=parts)
+    exposure = values_through_json(scene, lights=True)["lights"]["exposure"]
+    assert [name for name, _ in scene_with(scene, {"exposure": exposure}).exposure] == ["object"]
 
 
 def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> None:
