@@ -20,7 +20,8 @@
 /** @typedef {{name: string, on: boolean, intensity: number, most: number, units: number[],
  *   plane?: string}} LightRow */
 /**
- * @typedef {{held: string, exposure: string, ambient: number, rows: LightRow[], levels: string[], dither: boolean}} Lights
+ * @typedef {{held: string, exposure: string, ambient: number, rows: LightRow[], levels: string[],
+ *   dither: boolean}} Lights
  */
 /** @typedef {{name: string, paints?: Record<string, Partial<Paint>>,
  *   lights?: Record<string, Record<string, Value>>}} Variant */
