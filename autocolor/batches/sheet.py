@@ -29,7 +29,7 @@ GAP: Final = 8
 LABEL_LINES: Final = 16
 
 MOST_COLUMNS: Final = 100
-"""Limit: columns of a sheet. A sheet of the most variants has so many by default."""
+"""Limit: columns of a sheet that are asked for."""
 
 
 class Box(NamedTuple):
