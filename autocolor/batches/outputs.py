@@ -64,13 +64,9 @@ def paths_of(pattern: str | os.PathLike[str], scene: Scene, variants: Sequence[V
                 f"a name pattern must have each brace closed, not {shown(text)}; double a brace that belongs"
                 " to the name"
             )
-        if digits is not None and key != NUMBER:
-            raise UsageError(
-                f"only {{number}} of a name pattern can have a number of digits, not {brief(match[0])}; leave"
-                " the digits out"
-            )
-        if key not in (None, NUMBER, NAME):
-            own[key] = _own_text(scene, key)
+        if key not in (None, NUMBER, NAME) or (digits and key != NUMBER):
+            # Only a number can have digits.
+            own[key] = _own_text(scene, match[0][1:-1])
     paths: list[str] = []
     first: dict[str, str] = {}
     for number, variant in enumerate(variants, 1):

@@ -177,13 +177,18 @@ def runs_of(scene: Scene, variants: Sequence[Variant], most: int) -> list[list[i
 
     Variants of one frame share as few runs as possible, and several small frames share a run.
     """
-    columns = _columns(scene, variants)
-    dear = [ranks for tier, ranks in columns if tier is not Tier.ENTRIES]
-    frames = [ranks for tier, ranks in columns if tier is Tier.FRAME]
+    keys = dict.fromkeys(key for variant in variants for key in variant.settings)
+    tiers = {key: tier_of(scene, key) for key in keys}
+    dear = sorted((key for key in tiers if tiers[key] > Tier.ENTRIES), key=tiers.__getitem__, reverse=True)
+    frames = [key for key in dear if tiers[key] is Tier.FRAME]
+
+    def values(number: int, some: Sequence[str]) -> list[str]:
+        return [repr(variants[number].settings.get(key)) for key in some]
+
     # Sorting is stable: recolorings stay in the order of their table.
-    numbers = sorted(range(len(variants)), key=lambda number: [ranks[number] for ranks in dear])
+    numbers = sorted(range(len(variants)), key=lambda number: values(number, dear))
     runs: list[list[int]] = [[]]
-    for _, members in groupby(numbers, key=lambda number: [ranks[number] for ranks in frames]):
+    for _, members in groupby(numbers, key=lambda number: values(number, frames)):
         frame = list(members)
         if len(runs[-1]) + len(frame) > most and runs[-1]:
             runs.append([])
@@ -200,19 +205,6 @@ def cut(numbers: Sequence[int], most: int) -> list[list[int]]:
     [[0, 1, 2, 3], [4]]
     """
     return [list(numbers[start : start + most]) for start in range(0, len(numbers), most)]
-
-
-def _columns(scene: Scene, variants: Sequence[Variant]) -> list[tuple[Tier, list[int]]]:
-    """For each key that variants set, from dear to cheap: its tier, and the rank of its value by variant.
-
-    Values are ranked by their first occurrence; the rank of an absent value is 0.
-    """
-    columns = []
-    for key in dict.fromkeys(key for variant in variants for key in variant.settings):
-        values = [repr(each.settings[key]) if key in each.settings else "" for each in variants]
-        ranks = {value: rank for rank, value in enumerate(dict.fromkeys(["", *values]))}
-        columns.append((tier_of(scene, key), [ranks[value] for value in values]))
-    return sorted(columns, key=lambda column: -column[0])
 
 
 def tier_of(scene: Scene, key: str) -> Tier:

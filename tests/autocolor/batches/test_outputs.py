@@ -67,11 +67,11 @@ def test_no_name_and_no_value_leaves_the_folder_of_the_pattern(name: str, value:
         ("{name.png", "a name pattern must have each brace closed, not '{name.png'; double a brace"),
         ("name}.png", "a name pattern must have each brace closed"),
         ("{number:x}.png", "a name pattern must have each brace closed"),
-        ("{name:03}.png", "only {number} of a name pattern can have a number of digits, not {name:03}"),
+        ("{name:03}.png", "a field of a name pattern must be a key of the scene, not 'name:03'; did you"),
         ("{}.png", "a field of a name pattern must be a key of the scene, not ''"),
         ("{lights.key.on.on}.png", "a field of a name pattern must be a key of the scene, not"),
         ("{view.eye.x}.png", "a field of a name pattern must be a key of the scene, not 'view.eye.x'"),
-        (f"{{{'x' * 300}:3}}.png", "only {number} of a name pattern can have a number of digits, not {xxx"),
+        (f"{{{'x' * 300}:3}}.png", "a field of a name pattern must be a key of the scene, not 'xxx"),
     ],
 )
 def test_a_wrong_pattern_is_refused(pattern: str, sentence: str) -> None:
