@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from autocolor.batches.films import animate as animate
     from autocolor.batches.frames import frames as frames
+    from autocolor.batches.making import VariantWarning as VariantWarning
     from autocolor.batches.making import batch as batch
     from autocolor.batches.making import batch_results as batch_results
     from autocolor.batches.table import Variant as Variant
@@ -103,6 +104,7 @@ _HOME: Final = {
     "UnavailableError": "errors",
     "UsageError": "errors",
     "Variant": "batches.table",
+    "VariantWarning": "batches.making",
     "View": "scene.view",
     "WriteError": "errors",
     "animate": "batches.films",

@@ -47,6 +47,16 @@ def shown(value: object, most: int = 60) -> str:
     return text if len(text) <= most else f"{text[:most]}..."
 
 
+def brief(text: str, most: int = 80) -> str:
+    """The text for a message, at most `most` characters: of a longer text the beginning and the end.
+
+    >>> brief("lights.key.intensity", most=11)
+    'ligh...sity'
+    """
+    part = (most - 3) // 2
+    return text if len(text) <= most else f"{text[:part]}...{text[-part:]}"
+
+
 def printable(text: str) -> str:
     """The text with a question mark instead of each unprintable character, such as a line break."""
     return "".join(letter if letter.isprintable() else "?" for letter in text)

@@ -36,6 +36,8 @@ ENDING: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
 """The signals that end a program from outside. Windows has no SIGHUP."""
+LONG_WORD: Final = re.compile(r"(\S{38})\S{5,}(\S{38})")
+"""A word of more than 80 letters in a message of click: its beginning and its end."""
 SECONDS_BETWEEN: Final = 0.02
 """Limit: of two looks at whether Ended was dropped."""
 READER_LEFT: Final = 141
@@ -236,7 +238,7 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
     except click.exceptions.Abort:
         raise KeyboardInterrupt from None
     except click.ClickException as refusal:
-        refusal.message = escaped(refusal.message)  # type: ignore[misc]
+        refusal.message = escaped(LONG_WORD.sub(r"\1...\2", refusal.message))  # type: ignore[misc]
         with suppress(OSError, ValueError):
             refusal.show()
         return refusal.exit_code, ""

@@ -8,14 +8,13 @@
 | {number:04}.png | a numbered PNG for each field | lossless |
 
 A field after the first is stored as the rectangle that differs from the field before. Pillow encodes the
-fields; an animated PNG and a GIF are put together here, because Pillow keeps all fields in memory until the
-end. Of a WebP, the library keeps the encoded fields. The number of fields need not be known before the last.
-`TimedFilm` takes fields with the times at which they were shown.
+fields; the films are put together here, because Pillow keeps all fields in memory until the end. The number
+of fields need not be known before the last. `TimedFilm` takes fields with the times at which they were shown.
 
 Measured for 640 x 480 fields of the coupe, a turn and a fade of its paint: WebP takes 9 ms and 30 to 51 KB a
 field, an animated PNG 10 ms and 61 to 72 KB, a GIF 15 ms and 24 to 30 KB.
 Measured and rejected: slower methods of WebP, which save a fifth to a quarter of the bytes for three to seven
-times the time; WebP put together here, whose fields are twice as large.
+times the time; WebP whose every field is encoded by itself, which are twice as large.
 """
 
 from __future__ import annotations
@@ -25,6 +24,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator
 from io import BytesIO
+from itertools import islice
 from os import PathLike, fspath
 from pathlib import Path
 from struct import pack, unpack_from
@@ -47,10 +47,6 @@ two."""
 
 MOST_FIELDS: Final = 100_000
 """Limit: fields of a film."""
-
-MOST_WEBP_PIXELS: Final = 1 << 30
-"""Limit: pixels of a WebP, in all fields, if the number of fields is not known: 3,495 fields of 640 x 480. At
-its end, a WebP is in memory three times; an encoded field takes up to 0.32 bytes for each pixel."""
 
 LARGEST_WEBP: Final = 16383
 """The most elements and lines of a WebP."""
@@ -167,13 +163,6 @@ def numbered(pattern: str, number: int) -> str:
     return NUMBER.sub(lambda match: f"{number:0{int(match[1] or 1)}}", pattern)
 
 
-def most_fields(path: str | PathLike[str], lines: int, elements: int) -> int:
-    """The most fields of this size that a film at this path should have, if their number is not known."""
-    if Path(path).suffix.lower() == ".webp":
-        return max(1, min(MOST_FIELDS, MOST_WEBP_PIXELS // (lines * elements)))
-    return MOST_FIELDS
-
-
 def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
     """The fields, contiguous. Raises ColorsError for none, too many, or fields of different sizes."""
     size: tuple[int, ...] | None = None
@@ -229,55 +218,103 @@ def differing_area(field: Colors, before: Colors | None) -> Rectangle:
     return Rectangle(left, top, int(elements[-1]) - left + 1, int(lines[-1]) - top + 1)
 
 
-# Animated WebP.
+# Animated WebP, by its specification, RFC 9649: a header, and a chunk ANMF for each field.
 
+WEBP_GROUP: Final = 17
+"""Fields that are encoded together: after so many, libwebp begins with a whole field again."""
 
-class _Fields(Image.Image):
-    """The fields of a film after the first, as one image. Pillow gets this image MOST_FIELDS times.
+WEBP_GROUP_PIXELS: Final = 1 << 24
+"""Limit: pixels of the fields that are encoded together, unless a field alone has more. They take 50 MB, and
+their data no more."""
 
-    `n_frames` is 1 while there is a field. Pillow asks for `n_frames`, seeks the field, and encodes it.
-    """
-
-    def __init__(self, fields: Iterator[Colors], rate: float) -> None:
-        super().__init__()
-        self._fields = fields
-        self._rate = rate
-        self._next = next(fields, None)
-        self.durations = [ticks(0, rate, 1000)]
-        """The durations of the fields until now, with the first field, in milliseconds."""
-
-    @property
-    def n_frames(self) -> int:
-        return int(self._next is not None)
-
-    def seek(self, frame: int) -> None:
-        assert self._next is not None
-        vars(self).update(vars(Image.fromarray(self._next)))
-        self.durations.append(ticks(len(self.durations), self._rate, 1000))
-        self._next = next(self._fields, None)
+LARGEST_RIFF: Final = (1 << 32) - 10
+"""Limit: bytes of a WebP after its first eight."""
 
 
 def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> Loss:
-    first = next(fields)
-    if max(first.shape) > LARGEST_WEBP:
+    timed = _differing(fields, rate)
+    group = [next(timed)]
+    lines, elements, _ = group[0].field.shape
+    if max(lines, elements) > LARGEST_WEBP:
         raise OutputError(
-            f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(first.shape)}; write .apng"
+            f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(lines, elements)};"
+            " write .apng"
         )
-    buffer = BytesIO()
-    rest = _Fields(fields, rate)
-    Image.fromarray(first).save(
-        buffer,
-        "WEBP",
-        save_all=True,
-        append_images=[rest] * MOST_FIELDS if rest.n_frames else [],
-        duration=rest.durations,
-        loop=0 if loop else 1,
-        lossless=True,
-        quality=50,
-        method=0,
-    )
-    output.write(buffer.getvalue())
+    size = pack("<I", elements - 1)[:3] + pack("<I", lines - 1)[:3]
+    header = _riff_chunk(b"VP8X", bytes(4) + size) + _riff_chunk(b"ANIM", pack("<IH", 0, 0 if loop else 1))
+    output.write(b"RIFF\0\0\0\0WEBP" + header)
+    written, flags = 4 + len(header), ANIMATED
+    most = max(1, min(WEBP_GROUP, WEBP_GROUP_PIXELS // (lines * elements)))
+    while group:
+        group += islice(timed, most - len(group))
+        data, has_alpha = _webp_fields(group, size)
+        flags |= has_alpha
+        written += len(data)
+        if written > LARGEST_RIFF:
+            raise OutputError(
+                "a WebP must have at most 4 GB, not more; write .apng, or fewer or smaller fields"
+            )
+        output.write(data)
+        group = list(islice(timed, 1))
+    output.write_at(4, pack("<I", written))
+    output.write_at(20, bytes([flags]))
     return Loss()
+
+
+ANIMATED: Final = 0x02
+HAS_ALPHA: Final = 0x10
+"""The flags in VP8X of an animation, and of fields with transparent pixels, which show the field before."""
+
+
+class _TimedField(NamedTuple):
+    """A field with its duration in milliseconds."""
+
+    field: Colors
+    milliseconds: int
+
+
+def _differing(fields: Iterator[Colors], rate: float) -> Iterator[_TimedField]:
+    """The fields that differ from the field before, each with the time of its repeats."""
+    shown: Colors | None = None
+    duration = 0
+    for number, field in enumerate(fields):
+        if shown is not None and not np.array_equal(field, shown):
+            yield _TimedField(shown, duration)
+            duration = 0
+        shown = field
+        duration += ticks(number, rate, 1000)
+    if shown is not None:
+        yield _TimedField(shown, duration)
+
+
+def _webp_fields(group: list[_TimedField], size: bytes) -> tuple[bytes, int]:
+    """The chunks ANMF of some fields, of which the first is stored whole; and HAS_ALPHA or 0."""
+    first, *others = (Image.fromarray(timed.field) for timed in group)
+    durations = [timed.milliseconds for timed in group]
+    buffer = BytesIO()
+    how = {"duration": durations, "lossless": True, "quality": 50, "method": 0}
+    first.save(buffer, "WEBP", save_all=True, append_images=others, **how)
+    chunks = list(_riff_chunks(buffer.getvalue()))
+    if others:
+        fields = b"".join(_riff_chunk(*chunk) for chunk in chunks if chunk[0] == b"ANMF")
+        return fields, dict(chunks)[b"VP8X"][0] & HAS_ALPHA
+    # Pillow writes a still picture, whose chunk is the data of the field.
+    (chunk,) = chunks
+    place = bytes(6) + size + pack("<I", durations[0])[:3] + bytes(1)
+    return _riff_chunk(b"ANMF", place + _riff_chunk(*chunk)), 0
+
+
+def _riff_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """The kinds and data of the chunks of a WebP."""
+    place = 12
+    while place < len(data):
+        kind, length = unpack_from("<4sI", data, place)
+        yield kind, data[place + 8 : place + 8 + length]
+        place += 8 + length + length % 2
+
+
+def _riff_chunk(kind: bytes, data: bytes) -> bytes:
+    return kind + pack("<I", len(data)) + data + bytes(len(data) % 2)
 
 
 # Animated PNG, by its specification: acTL counts the fields, fcTL describes a field, and fdAT holds the data

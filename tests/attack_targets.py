@@ -30,7 +30,7 @@ import numpy as np
 
 import autocolor
 from autocolor import Mesh, Scene, Studio, Variant, read_journal, read_scene
-from autocolor.batches.outputs import Pattern
+from autocolor.batches.outputs import paths_of
 from autocolor.commands.settings import with_settings
 from autocolor.commands.show import show_once
 from autocolor.commands.sql import lines_of, split
@@ -262,8 +262,7 @@ def variants_reader(suffix: str) -> Reading:
 
 
 def fault_of_variants(variants: Sequence[Variant]) -> str:
-    pattern = Pattern("{number}-{name}.png", scene())
-    if any(os.path.dirname(pattern.path(1, variant)) for variant in variants):
+    if any(map(os.path.dirname, paths_of("{number}-{name}.png", scene(), variants))):
         return "a name that leads to another folder"
     for variant in variants[:5]:
         with contextlib.suppress(AutocolorError):

@@ -5,9 +5,9 @@ docs/guides/paint.md shows each. `ramtek_emu.films` writes the films.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
-from contextlib import closing, contextmanager
+from contextlib import closing
 from io import BytesIO
 from numbers import Real
 from os import PathLike, fspath
@@ -16,14 +16,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes
 from autocolor.batches.making import Batch, Source, batch_results, checked_batch
-from autocolor.batches.runs import Start
+from autocolor.batches.runs import Start, tier_of
 from autocolor.batches.table import Result, Rows, Variant, variants_of
-from autocolor.budget import require_memory
-from autocolor.checks import shown
+from autocolor.checks import brief, shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.settings import field_of, place_of, scene_with, value_at
+from autocolor.files.settings import scene_with
 from autocolor.files.writing import refusals_of_this_package, refuse_output, write_atomically
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.rendering import sees_the_same
@@ -37,10 +35,6 @@ FRAMES_PER_SECOND: Final = 24.0
 
 STREAM: Final = ".ramtek"
 FILMS: Final = (".webp", ".apng", ".gif")
-
-BYTES_OF_PIXEL: Final = 1.0
-"""Measured: an encoded frame of a WebP takes up to 0.32 bytes for each pixel. At its end, a film is in memory
-three times: as frames, as a whole, and as a file."""
 
 Progress = Callable[[Result], object]
 """A function that is called with the result of each frame."""
@@ -75,16 +69,16 @@ def animate(
 
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 
-    A frame costs its edit from the frame before. Memory is bounded, because each frame is written when it is
-    made; only a WebP and a stream are in memory until their end. `frames_per_second` is 0.1 to 100, and at
+    A frame costs its edit from the frame before. Memory is bounded, because frames are written as they are
+    made; only a stream is in memory until its end. `frames_per_second` is 0.1 to 100, and at
     most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are as in `render`.
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
     has the words of the first frame and then a load of the lookup table for each frame.
 
     Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
-    cannot be made, if a frame of a .ramtek file changes more than entries, or if a film needs more memory
-    than the budget allows. A film or a stream is then not written; numbered pictures that were finished stay.
-    Raises OutputError or WriteError if the file cannot be written.
+    cannot be made, or if a frame of a .ramtek file changes more than entries. A film or a stream is then not
+    written; numbered pictures that were finished stay. Raises OutputError or WriteError if the file cannot be
+    written.
     """
     from ramtek_emu.films import write_film
 
@@ -118,7 +112,7 @@ def animate(
         with refusals_of_this_package(name):
             loss = write_film(
                 name,
-                _colors(_made(results, tell), len(variants) if kind == ".webp" else 0),
+                (result.image for result in _made(results, tell) if isinstance(result.image, np.ndarray)),
                 fields_per_second=frames_per_second,
                 loop=loop,
                 overwrite=overwrite,
@@ -131,13 +125,13 @@ def kind_of(path: str) -> str:
     suffix = Path(path).suffix.lower()
     if suffix == ".png" and "{" not in path:
         raise UsageError(
-            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {path!r}; or end the"
-            " name in .apng for an animated PNG"
+            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {shown(path)}; or"
+            " end the name in .apng for an animated PNG"
         )
     if suffix not in (*FILMS, ".png", STREAM):
         raise UsageError(
             f"an animation must be written to .webp, .apng, .gif, frame-{{number:04}}.png or .ramtek, not to"
-            f" {path!r}; rename it"
+            f" {shown(path)}; rename it"
         )
     return suffix
 
@@ -164,20 +158,6 @@ def _made(results: Iterator[Result], tell: Progress) -> Iterator[Result]:
         tell(result)
 
 
-def _colors(results: Iterator[Result], in_memory: int) -> Iterator[Bytes]:
-    """The colors of frames. Raises InputError if `in_memory` encoded frames do not fit in memory."""
-    for result in results:
-        image = result.image
-        assert isinstance(image, np.ndarray)
-        if in_memory:
-            require_memory(
-                BYTES_OF_PIXEL * image.shape[0] * image.shape[1] * in_memory,
-                f"a WebP of {in_memory:,} frames",
-                "write .apng, or fewer or smaller frames",
-            )
-        yield image
-
-
 # Color cycling: one load of the lookup table a frame.
 
 
@@ -198,12 +178,6 @@ def _stream(
             "a stream must have smooth=1, because a display cannot average; leave it out, or render the"
             " picture file with --smooth 1"
         )
-    first: Scene | None = None
-    for number, variant in enumerate(variants, 1):
-        with _naming(number):
-            scene = scene_with(batch.scene, variant.settings)
-        first = first or scene
-        _check_entries_alone(first, scene, variants, number)
     file = BytesIO()
     send_cycle(Recorder(file), _images(batch, tell))
     write_atomically(path, file.getvalue(), overwrite=overwrite)
@@ -211,46 +185,34 @@ def _stream(
 
 
 def _images(batch: Batch, tell: Progress) -> Iterator[DisplayImage]:
-    """The display images of the variants of a batch."""
+    """The display images of frames that change entries alone. Raises InputError, with the frame."""
     start = Start(batch.scene, batch.picture)
+    first: Scene | None = None
     for number, variant in enumerate(batch.variants, 1):
-        with _naming(number):
+        try:
+            scene = scene_with(batch.scene, variant.settings)
+            first = first or scene
+            _check_entries_alone(first, scene, batch.variants[0].settings, variant.settings)
             image, tier = start.image_of(variant.settings, batch.drawing)
+        except (InputError, UsageError) as error:
+            raise InputError(f"frame {number}: {problem}" for problem in error.problems) from None
         yield image
         tell(Result(variant.name, variant.settings, tier=tier))
 
 
-@contextmanager
-def _naming(number: int) -> Iterator[None]:
-    """Raise an InputError with the number of the frame for a frame that cannot be made."""
-    try:
-        yield
-    except (InputError, UsageError) as error:
-        raise InputError(f"frame {number}: {problem}" for problem in error.problems) from None
-
-
-def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ...], number: int) -> None:
-    """Raise InputError, with the key, if a frame changes more than entries of the lookup table."""
+def _check_entries_alone(
+    first: Scene, other: Scene, one: Mapping[str, object], two: Mapping[str, object]
+) -> None:
+    """Raise InputError, with the key, if two frames, with their settings, differ in more than entries."""
     if not costs_at_least(first, other, Tier.LEVELS):
         return
     if first.words == other.words == NORMALS and sees_the_same(first, other):
         # Words stand for normals, so an edit of a light changes entries alone.
         return
-    tier, key = max(_costs(first, other, variants))
+    tier, key = max((tier_of(first, key), key) for key in {*one, *two} if one.get(key) != two.get(key))
     is_light = tier in (Tier.MIX, Tier.LIGHT)
     by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
     raise InputError(
-        f"frame {number}: a frame of a stream must change entries of the lookup table alone, and an edit of"
-        f" {key} computes {tier.computed} again; write a film such as .webp{by_normals}"
+        "a frame of a stream must change entries of the lookup table alone, and an edit of"
+        f" {brief(key)} computes {tier.computed} again; write a film such as .webp{by_normals}"
     )
-
-
-def _costs(first: Scene, other: Scene, variants: tuple[Variant, ...]) -> Iterator[tuple[Tier, str]]:
-    """The cost of each key whose values differ in two scenes, with the key."""
-    for key in {key for variant in variants for key in variant.settings}:
-        place = place_of(first, key)
-        field, one, two = field_of(place), value_at(first, place), value_at(other, place)
-        column = None if field is None else field.column
-        costs = Tier.FRAME if column is None else column.kind.cost(one, two, column.tier)
-        if costs is not None and not (one is two is None):
-            yield costs, key

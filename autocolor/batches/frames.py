@@ -22,7 +22,7 @@ from numbers import Real
 from typing import Any, Final
 
 from autocolor.batches.table import MOST_VARIANTS, Rows, Variant, check_keys, variants_of
-from autocolor.checks import is_whole, shown
+from autocolor.checks import brief, is_whole, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.settings import SettingPlace, field_of, place_of, row_at, scene_with, value_at
 from autocolor.scene.row_kinds import OneRowOf
@@ -138,7 +138,9 @@ class _Track:
                 scenes.append(scene_with(scene, variant.settings))
             except (InputError, UsageError) as error:
                 base = InputError if isinstance(error, InputError) else UsageError
-                raise base(f"variant {variant.name}: {problem}" for problem in error.problems) from None
+                raise base(
+                    f"variant {brief(variant.name)}: {problem}" for problem in error.problems
+                ) from None
         keys = dict.fromkeys(key for variant in variants for key in variant.settings)
         if any(key in keys for key in LINE_OF_SIGHT):
             # Between a view with a target and a view with a direction, there are views with directions.
@@ -199,12 +201,14 @@ def times_of(variants: Sequence[Variant]) -> list[float]:
     times: list[Any] = [variant.time for variant in variants]
     if None in times:
         missing = variants[times.index(None)].name
-        raise UsageError(f"all variants must have times, or none, not all but {missing!r}; give it a time")
+        raise UsageError(
+            f"all variants must have times, or none, not all but {shown(missing)}; give it a time"
+        )
     for (one, before), (other, after) in pairwise(zip(variants, times, strict=True)):
         if before >= after:
             raise UsageError(
-                f"the time of {other.name!r} must be later than the time of {one.name!r}, {before:g}, not"
-                f" {after:g}; sort the variants by time"
+                f"the time of {shown(other.name)} must be later than the time of {shown(one.name)},"
+                f" {before:g}, not {after:g}; sort the variants by time"
             )
     return times
 

@@ -7,63 +7,85 @@ writes files.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Sequence, Set
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
-from contextlib import closing, suppress
+import warnings
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
+from itertools import islice
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Final, TypedDict, Unpack
 
 from autocolor.arrays import Bytes
-from autocolor.batches.order import cut, runs_of, tier_of
-from autocolor.batches.outputs import ARRAY, SHEET_MARK, Pattern, base_mark, form_of, mark_in, mark_of
-from autocolor.batches.runs import Drawing, Made, Start, VariantTask, forget, make, make_run
+from autocolor.batches.outputs import (
+    ARRAY,
+    SHEET_MARK,
+    base_mark,
+    form_of,
+    mark_in,
+    mark_of,
+    paths_of,
+    same_file,
+)
+from autocolor.batches.runs import Drawing, Made, Start, VariantTask, cut, make_run, runs_of
 from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
-from autocolor.budget import allowed_memory, allowing, validated_limit
-from autocolor.checks import is_whole, shown
+from autocolor.budget import allowed_memory, validated_limit
+from autocolor.checks import brief, is_whole, nearest, shown
 from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.opening import is_picture, read_scene
 from autocolor.files.picture_file import SavedPicture, read_picture
+from autocolor.files.settings import field_of, place_of, scene_with
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
 from autocolor.images import check_png_level
 from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
-from autocolor.logs import logger_of
-from autocolor.rendering import LARGEST_RASTER, rendering
-from autocolor.scene.columns import Tier
+from autocolor.rendering import LARGEST_RASTER
 from autocolor.scene.scene import Scene, check_scene
-from ramtek_emu.errors import escaped
-
-LOG: Final = logger_of(__name__)
 
 Source = Scene | SavedPicture | tuple[Scene, Picture] | str | PathLike[str]
 """What variants are made from: a scene, a scene with its picture, a picture that was read, or a path."""
 
-RUNS: Final = 16
-"""The most variants of a run, unless the caller chooses.
+VARIANTS_OF_RUN: Final = 16
+"""The most variants of a run.
 
 Measured: handing out the coupe's picture takes this process 1.6 ms for a run of one variant, and 0.2 ms a
 variant for runs of 16. With runs of 1, 4, 16 and 64, two processes take the same time within a tenth.
 """
 
-MOST_IN_RUN: Final = 10_000
-"""Limit: variants of a run."""
-
 BYTES_OF_RUN: Final = 1 << 28
 """Limit: bytes that a run returns; runs of large pictures are shorter."""
 
-BYTES_WAITING: Final = 1 << 29
+BYTES_UNDER_WAY: Final = 1 << 29
 """Limit: bytes of the pictures that an executor computes or has finished. It always gets two runs."""
 
-LONGEST_PATH: Final = 4096
-"""Limit: characters of the path of a picture, as on most systems."""
+WORKERS: Final = 62
+"""Assumed: the workers of an executor that does not say how many it has."""
 
 MORE_THAN_WORKERS: Final = 2
 """Runs that wait for a worker, so that no worker waits for a run."""
 
-WINDOW: Final = 64
-"""Runs that an executor gets at once if it does not say how many workers it has."""
+PROBLEMS_SHOWN: Final = 10
+"""The problems in the message about a batch of which no variant could be made."""
+
+
+class VariantWarning(UserWarning):
+    """A variant of a batch could not be made; the others are."""
+
+
+class Options(TypedDict, total=False):
+    """How a batch is made; see `batch`."""
+
+    executor: Executor | None
+    size: tuple[int, int] | None
+    smooth: int | None
+    form: str | None
+    level: int | None
+    sync: bool
+    overwrite: bool
+    resume: bool
+    ordered: bool
 
 
 @dataclass(frozen=True)
@@ -77,105 +99,71 @@ class Batch:
     drawing: Drawing
     base: str
     """The checksum of the scene, its picture and the drawing."""
-    executor: Executor | None
-    runs: int
-    ordered: bool
-    overwrite: bool
-    resume: bool
-    sync: bool
+    options: Options
 
     def results(self) -> Generator[tuple[int, Result, Bytes | None], None, None]:
-        """The number, the result and the thumbnail of each variant, as they are made."""
-        present = self._present()
-        if self.ordered:
-            runs = cut(range(len(self.variants)), self._most_in_run(len(self.variants)))
-        else:
-            for number in sorted(present):
+        """The number, the result and the thumbnail of each variant: whole files first, then new pictures."""
+        missing = []
+        for number, variant in enumerate(self.variants):
+            mark = mark_in(self.paths[number], self.drawing.form) if self.options.get("resume") else ""
+            if mark and mark == mark_of(self.base, variant):
                 yield self._skipped(number)
-            missing = [number for number in range(len(self.variants)) if number not in present]
-            most = self._most_in_run(len(missing))
-            ordered = runs_of(self.scene, [self.variants[number] for number in missing], most)
-            runs = [[missing[place] for place in run] for run in ordered]
-        executor = self.executor
-        made = self._made_here(runs, present) if executor is None else self._made_by(executor, runs, present)
+            else:
+                missing.append(number)
+        if not missing:
+            return
+        # A small batch has at least a run for each worker.
+        executor = self.options.get("executor")
+        most = min(VARIANTS_OF_RUN, -(-len(missing) // (_workers(executor) or 1)))
+        most = max(1, min(most, BYTES_OF_RUN // self.drawing.bytes_of_picture))
+        rows = [self.variants[number] for number in missing]
+        is_ordered = self.options.get("ordered")
+        order = cut(range(len(missing)), most) if is_ordered else runs_of(self.scene, rows, most)
+        runs = ([self._task(missing[place]) for place in run] for run in order)
+        made = self._made_here(runs) if executor is None else self._made_by(executor, runs)
         with closing(made):
             for each in made:
-                yield self._skipped(each) if isinstance(each, int) else self._finished(each)
-
-    def _most_in_run(self, count: int) -> int:
-        """The most variants of a run, so that `count` variants are at least a run for each worker."""
-        return max(1, min(self.runs, -(-count // (_workers(self.executor) or 1))))
-
-    def _present(self) -> set[int]:
-        """The numbers of the variants whose files are whole."""
-        if not self.resume:
-            return set()
-        return {
-            number
-            for number, (path, variant) in enumerate(zip(self.paths, self.variants, strict=True))
-            if mark_in(path, self.drawing.form) == mark_of(self.base, variant)
-        }
+                yield self._finished(each)
 
     def _task(self, number: int) -> VariantTask:
         variant = self.variants[number]
         mark = "" if self.drawing.form == ARRAY else mark_of(self.base, variant)
         return VariantTask(number, dict(variant.settings), mark)
 
-    def _made_here(
-        self, runs: Iterable[Sequence[int]], present: Set[int]
-    ) -> Generator[Made | int, None, None]:
-        """The pictures of the runs, made in this process. A present variant gives its number alone."""
+    def _made_here(self, runs: Iterator[list[VariantTask]]) -> Generator[Made, None, None]:
+        """The pictures of the runs, made in this process."""
         start = Start(self.scene, self.picture)
-        for number in (number for run in runs for number in run):
-            yield number if number in present else make(start, self.drawing, self._task(number))
+        for task in (task for run in runs for task in run):
+            yield from make_run(start, self.drawing, [task])
 
-    def _made_by(
-        self, executor: Executor, runs: Iterable[Sequence[int]], present: Set[int]
-    ) -> Generator[Made | int, None, None]:
-        """The pictures of the runs, made by an executor. A present variant gives its number alone.
+    def _made_by(self, executor: Executor, runs: Iterator[list[VariantTask]]) -> Generator[Made, None, None]:
+        """The pictures of the runs, made by an executor, in their order.
 
-        Raises UnavailableError if workers end.
+        Raises UnavailableError if its workers end, or if it returns something else.
         """
-        if len(present) == len(self.variants):
-            yield from (number for run in runs for number in run)
-            return
-        start = Start(self.scene, self.picture if self.picture is not None else self._picture_of_all())
-        window, waiting = self._window(executor), iter(runs)
-        pending: dict[Future[list[Made]], Sequence[int]] = {}
+        start = Start(self.scene, self.picture)
+        most = max(2, BYTES_UNDER_WAY // (self.drawing.bytes_of_picture * VARIANTS_OF_RUN))
+        most = min(most, (_workers(executor) or WORKERS) + MORE_THAN_WORKERS)
+        under_way: deque[tuple[list[VariantTask], Future[list[Made]]]] = deque()
         try:
             while True:
-                while len(pending) < window and (run := next(waiting, None)) is not None:
-                    tasks = [self._task(number) for number in run if number not in present]
-                    pending[_submitted(executor, start, self.drawing, tasks)] = run
-                if not pending:
+                for run in islice(runs, most - len(under_way)):
+                    with _working(RuntimeError, CancelledError):
+                        under_way.append((run, executor.submit(make_run, start, self.drawing, run)))
+                if not under_way:
                     return
-                first = next(iter(pending))
-                done = {first} if self.ordered else wait(pending, return_when=FIRST_COMPLETED).done
-                for future in done:
-                    run = pending.pop(future)
-                    made = {each.number: each for each in _returned(future)}
-                    for number in run:
-                        yield made.get(number, number)
+                tasks, future = under_way.popleft()
+                with _working(BrokenExecutor, CancelledError):
+                    made = future.result()
+                if not _is_made_of(made, tasks):
+                    raise UnavailableError(
+                        "an executor must return what its function returns, the picture of each variant, and"
+                        " this one returned something else; use an executor of concurrent.futures"
+                    )
+                yield from made
         finally:
-            for future in pending:
+            for _, future in under_way:
                 future.cancel()
-            forget(start)
-
-    def _picture_of_all(self) -> Picture | None:
-        """The picture of all variants if they only recolor; otherwise None."""
-        keys = {key for variant in self.variants for key in variant.settings}
-        if any(key == "words" or tier_of(self.scene, key) >= Tier.MIX for key in keys):
-            return None
-        # If rendering fails, the result of each variant says why.
-        with suppress(InputError), allowing(self.drawing.limit):
-            return rendering(self.scene, *self.drawing.raster).picture
-        return None
-
-    def _window(self, executor: Executor) -> int:
-        """How many runs an executor gets at once."""
-        workers = _workers(executor)
-        window = WINDOW if workers is None else workers + MORE_THAN_WORKERS
-        return max(2, min(window, BYTES_WAITING // (self.drawing.bytes_of_picture * self.runs)))
 
     def _skipped(self, number: int) -> tuple[int, Result, Bytes | None]:
         """The result of a variant whose file is whole."""
@@ -201,23 +189,16 @@ class Batch:
     def _write(self, path: str, data: bytes) -> None:
         """Write a file and, if it is missing, its folder. Raises OutputError, WriteError."""
         _make_folder(path)
-        # Replace an earlier picture of a batch, or an empty file, which a power failure leaves if `sync` is
-        # false. Never replace any other file.
-        is_ours = self.resume and (mark_in(path, self.drawing.form) != "" or _is_empty(path))
-        write_atomically(path, data, overwrite=self.overwrite or is_ours, sync=self.sync)
+        # Replace an earlier picture of a batch, and never any other file.
+        overwrites = self.options.get("overwrite", False)
+        is_ours = self.options.get("resume", False) and mark_in(path, self.drawing.form) != ""
+        write_atomically(path, data, overwrite=overwrites or is_ours, sync=self.options.get("sync", True))
 
 
 def _workers(executor: Executor | None) -> int | None:
     """How many workers an executor has; None if it does not say."""
     workers = getattr(executor, "_max_workers", None)
     return workers if isinstance(workers, int) and workers > 0 else None
-
-
-def _is_empty(path: str) -> bool:
-    """Whether there is a file without a byte at a path."""
-    with suppress(OSError):
-        return os.path.isfile(path) and os.path.getsize(path) == 0
-    return False
 
 
 def _make_folder(path: str | PathLike[str]) -> None:
@@ -227,44 +208,33 @@ def _make_folder(path: str | PathLike[str]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(
-            f"an output must have a folder, and {folder} cannot be made ({reason_of(error)}); choose another"
-            " place"
+            f"an output must have a folder, and {brief(str(folder))} cannot be made ({reason_of(error)});"
+            " choose another place"
         ) from None
 
 
-def _submitted(
-    executor: Executor, start: Start, drawing: Drawing, tasks: list[VariantTask]
-) -> Future[list[Made]]:
-    """The future of a run. Raises UnavailableError if the executor accepts no run."""
+@contextmanager
+def _working(*broken: type[Exception]) -> Iterator[None]:
+    """Raise UnavailableError for the errors of an executor that is broken or shut down."""
     try:
-        return executor.submit(make_run, start, drawing, tasks)
-    except RuntimeError as error:
-        # An executor is broken or shut down.
-        raise _unavailable(error) from error
-
-
-def _returned(future: Future[list[Made]]) -> list[Made]:
-    """What a worker returned. Raises UnavailableError if the worker ended before."""
-    try:
-        return future.result()
-    except (BrokenExecutor, CancelledError) as error:
-        raise _unavailable(error) from error
+        yield
     except Exception as error:
-        if type(error).__name__ == KILLED:
-            raise _unavailable(error) from error
-        raise
+        # Dask's error for a task whose workers ended is known by its name.
+        if not isinstance(error, broken) and type(error).__name__ != "KilledWorker":
+            raise
+        reason = f" ({brief(str(error))})" if str(error) else ""
+        raise UnavailableError(
+            f"the workers of a batch must run until it ends, and they stopped{reason}; finished files are"
+            " whole: go on with resume, perhaps with fewer workers if memory was short"
+        ) from error
 
 
-KILLED: Final = "KilledWorker"
-"""The error of Dask for a task whose workers ended."""
-
-
-def _unavailable(error: Exception) -> UnavailableError:
-    reason = f" ({escaped(str(error))[:200]})" if str(error) else ""
-    return UnavailableError(
-        f"the workers of a batch must run until it ends, and they stopped{reason}; finished files are whole:"
-        " go on with resume, perhaps with fewer workers if memory was short"
+def _is_made_of(made: object, tasks: Sequence[VariantTask]) -> bool:
+    """Whether an executor returned a picture or a problem for each variant of a run."""
+    numbers = (
+        [each.number if isinstance(each, Made) else None for each in made] if isinstance(made, list) else []
     )
+    return numbers == [task.number for task in tasks]
 
 
 def _source(source: Source) -> tuple[Scene, Picture | None]:
@@ -282,15 +252,9 @@ def _source(source: Source) -> tuple[Scene, Picture | None]:
     return source, None
 
 
-def _drawing(
-    picture: Picture | None,
-    size: tuple[int, int] | None,
-    smooth: int | None,
-    form: str,
-    level: int | None,
-    thumbnail: Box | None,
-) -> Drawing:
+def _drawing(picture: Picture | None, form: str, thumbnail: Box | None, options: Options) -> Drawing:
     """How to draw the pictures of a batch. Raises UsageError for a wrong or contradicting size."""
+    size, smooth, level = options.get("size"), options.get("smooth"), options.get("level")
     if smooth is not None:
         check_smooth(smooth)
     check_png_level(level)
@@ -314,95 +278,61 @@ def _drawing(
     return Drawing(lines, elements, int(smooth), form, level, thumbnail, validated_limit(None))
 
 
-def _paths(pattern: Pattern | None, variants: Sequence[Variant]) -> tuple[str, ...]:
-    """The path of each variant; none without a pattern.
-
-    Raises UsageError if two variants have the same file, or if a path is too long.
-    """
-    if pattern is None:
-        return ()
-    paths: list[str] = []
-    first: dict[str, int] = {}
-    for number, variant in enumerate(variants, 1):
-        path = pattern.path(number, variant)
-        if len(path) > LONGEST_PATH:
-            raise UsageError(
-                f"the path of a picture must have at most {LONGEST_PATH:,} characters, not {len(path):,} as"
-                f" for {shown(variant.name)}; shorten the name pattern"
-            )
-        paths.append(path)
-        other = first.setdefault(_same_file(path), number)
-        if other != number:
-            raise UsageError(
-                f"a name pattern must give each variant a file of its own, and {path} is the file of both"
-                f" {shown(variants[other - 1].name)} and {shown(variants[number - 1].name)}; add {{name}} or"
-                " {number}"
-            )
-    return tuple(paths)
+def check_keys(scene: Scene, variants: Iterable[Variant]) -> None:
+    """Raise UsageError, which begins with the key, if a variant sets a key that the scene does not have."""
+    values: dict[str, object] = {}
+    for variant in variants:
+        values = {**variant.settings, **values} if variant.settings.keys() - values.keys() else values
+    for key, value in values.items():
+        if field_of(place_of(scene, key)) is None:
+            # A whole inline row has no field of its own, but a value.
+            try:
+                scene_with(scene, {key: value})
+            except InputError as error:
+                raise UsageError(f"{brief(key)}: {problem}" for problem in error.problems) from None
 
 
 def checked_batch(
     source: Source,
     variants: Rows,
     output: str | PathLike[str] | None,
-    *,
-    executor: Executor | None = None,
-    runs: int = RUNS,
-    size: tuple[int, int] | None = None,
-    smooth: int | None = None,
-    form: str | None = None,
-    level: int | None = None,
-    sync: bool = True,
-    overwrite: bool = False,
-    resume: bool = False,
-    ordered: bool = False,
     thumbnail: Box | None = None,
+    **options: Unpack[Options],
 ) -> Batch:
     """The checked batch. Raises the errors of `batch_results`, before anything is made."""
-    form = form_of(output, form)
-    if not is_whole(runs, 1, MOST_IN_RUN):
-        raise UsageError(
-            f"runs must be a whole number from 1 to {MOST_IN_RUN:,}, not {shown(runs)}; give one such as"
-            f" {RUNS}"
-        )
+    for name in options:
+        if name not in Options.__annotations__:
+            raise UsageError(
+                f"there is no option {shown(name)} of a batch{nearest(name, Options.__annotations__)}"
+            )
+    form, executor = form_of(output, options.get("form")), options.get("executor")
     is_class = isinstance(executor, type)
     if executor is not None and (is_class or not callable(getattr(executor, "submit", None))):
         raise UsageError(
             f"an executor must be one of concurrent.futures or the like, not {shown(executor)}; leave it out"
             " for this process"
         )
-    if resume and output is None:
+    if options.get("resume") and output is None:
         raise UsageError("only a batch with an output can be resumed; give a name pattern as output")
     rows = variants_of(variants)
+    if not rows:
+        raise UsageError(
+            "a batch must have at least one variant, not none; add a row, or {} for the scene itself"
+        )
     scene, picture = _source(source)
-    drawing = _drawing(picture, size, smooth, form, level, thumbnail)
-    paths = _paths(None if output is None else Pattern(output, scene), rows)
-    if not (overwrite or resume):
+    check_keys(scene, rows)
+    drawing = _drawing(picture, form, thumbnail, options)
+    paths = () if output is None else paths_of(output, scene, rows)
+    if not (options.get("overwrite") or options.get("resume")):
         existing = [path for path in paths if os.path.lexists(path)]
         if existing:
             others = f" and {len(existing) - 1:,} more, which exist" if existing[1:] else ", which exists"
             raise OutputError(
-                f"the pictures of a batch must be new files, not {existing[0]}{others}; resume the batch with"
-                " --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
+                f"the pictures of a batch must be new files, not {brief(existing[0])}{others}; resume the"
+                " batch with --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
             )
     base = "" if form == ARRAY else base_mark(scene, picture, drawing.numbers)
-    most = max(1, min(runs, BYTES_OF_RUN // drawing.bytes_of_picture))
-    return Batch(scene, picture, rows, paths, drawing, base, executor, most, ordered, overwrite, resume, sync)
-
-
-class Options(TypedDict, total=False):
-    """How a batch is made; see `batch`."""
-
-    executor: Executor | None
-    runs: int
-    size: tuple[int, int] | None
-    smooth: int | None
-    form: str | None
-    level: int | None
-    sync: bool
-    overwrite: bool
-    resume: bool
-    ordered: bool
+    return Batch(scene, picture, rows, paths, drawing, base, options)
 
 
 def batch_results(
@@ -417,14 +347,7 @@ def batch_results(
     the order in which they cost least. Memory is bounded, however many variants there are. To stop a batch,
     close the generator: files are then whole, and waiting runs are canceled.
     """
-    checked = checked_batch(source, variants, output, **options)
-    return _only_results(checked)
-
-
-def _only_results(checked: Batch) -> Generator[Result, None, None]:
-    with closing(checked.results()) as results:
-        for _, result, _ in results:
-            yield result
+    return (result for _, result, _ in checked_batch(source, variants, output, **options).results())
 
 
 def batch(
@@ -433,6 +356,7 @@ def batch(
     output: str | PathLike[str] | None = None,
     *,
     sheet: str | PathLike[str] | None = None,
+    columns: int | None = None,
     table: str | PathLike[str] | None = None,
     progress: Callable[[Result], object] | None = None,
     **options: Unpack[Options],
@@ -452,23 +376,26 @@ def batch(
     The options:
 
     - `executor`: any executor of concurrent.futures, also Dask's `Client.get_executor()`; by default this
-      process does the work. Runs of at most `runs` variants travel to it, at least a run for each worker.
+      process does the work. Runs of variants travel to it, at least a run for each worker.
     - `size`, by default (640, 480), and `smooth`, by default 1, as in `render`; a picture has its own.
     - `level`: the compression of PNG files, 0 to 9; `sync=False` as in `save_image`.
     - `resume`: skip each variant whose file is whole and was made from the same scene or picture and the
       same settings, and replace the other files that a batch wrote. `overwrite` replaces any file.
     - `ordered`: make the variants in their own order, as frames of an animation.
 
-    `sheet` is a PNG file for a labeled contact sheet, `table` a CSV file for the results; both are also
-    written if the batch is stopped. `progress` is called with each result.
+    `sheet` is a PNG file for a labeled contact sheet of so many `columns`, by default in the shape of a grid.
+    `table` is a CSV file for the results. Both are also written if the batch is stopped. `progress` is called
+    with each result.
 
-    A variant that cannot be made has a `problem` in its result, which is also logged as a warning, and loses
-    no other. Raises UsageError for a wrong argument, and for arrays that exceed the memory budget;
-    InputError for an invalid source; OutputError if a file exists; WriteError if a file cannot be written;
-    UnavailableError if the executor fails.
+    A variant that cannot be made has a `problem` in its result, is told by a VariantWarning, and loses no
+    other. Raises UsageError for a wrong argument, a key that the scene does not have, and arrays that exceed
+    the memory budget; InputError for an invalid source, and if no variant can be made; OutputError if a file
+    exists; WriteError if a file cannot be written; UnavailableError if the executor fails.
     """
     rows = variants_of(variants)
-    cells = None if sheet is None else ContactSheet(rows)
+    if columns is not None and sheet is None:
+        raise UsageError("columns are for a contact sheet; give a sheet, or leave them out")
+    cells = None if sheet is None else ContactSheet(rows, columns)
     checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
     if output is None and checked.drawing.form == ARRAY:
         needed = len(rows) * checked.drawing.bytes_of_picture
@@ -480,10 +407,11 @@ def batch(
     for path, suffix, what in ((sheet, ".png", "a contact sheet"), (table, ".csv", "a table of results")):
         if path is not None:
             check_suffix(path, suffix, what)
-            if _same_file(path) in map(_same_file, checked.paths):
+            if same_file(path) in map(same_file, checked.paths):
                 raise UsageError(f"{what} must have a file of its own, not {path}, a picture's; rename it")
             _make_folder(path)
-            refuse_output(path, overwrite=checked.overwrite or (checked.resume and _is_of_batch(path)))
+            is_ours = options.get("resume", False) and _is_of_batch(path)
+            refuse_output(path, overwrite=options.get("overwrite", False) or is_ours)
     results: dict[int, Result] = {}
     try:
         with closing(checked.results()) as made:
@@ -500,15 +428,14 @@ def batch(
             write_atomically(table, results_bytes(in_order), overwrite=True)
         if sheet is not None and cells is not None:
             write_atomically(sheet, cells.png(), overwrite=True)
-    for result in in_order:
-        for line in result.problem.splitlines():
-            LOG.warning("%s: %s", result.name, line)
+    failed = [result for result in in_order if result.problem]
+    sentences = [f"{brief(result.name)}: {line}" for result in failed for line in result.problem.splitlines()]
+    if len(failed) == len(rows):
+        more = len(sentences) - PROBLEMS_SHOWN
+        raise InputError(sentences[:PROBLEMS_SHOWN] + [f"and {more:,} problems more"] * (more > 0))
+    for sentence in sentences:
+        warnings.warn(sentence, VariantWarning, stacklevel=2)
     return in_order
-
-
-def _same_file(path: str | PathLike[str]) -> str:
-    """A text that is equal for names of one file, also where capitals do not matter."""
-    return os.path.normcase(os.path.abspath(path)).casefold()
 
 
 def _is_of_batch(path: str | PathLike[str]) -> bool:

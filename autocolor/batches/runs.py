@@ -1,8 +1,10 @@
-"""Making the pictures of a run of variants, in this process or in a worker.
+"""The order of variants, and making the pictures of a run of them, in this process or in a worker.
 
-Each variant of a run reuses whatever its edit leaves of the variant before it. If a batch only recolors, its
-picture travels with each run; otherwise the scene travels. Each worker keeps its last rendering until it
-works at another batch.
+Each variant of a run reuses whatever its edit leaves of the variant before it. So variants that see the same
+points are made one after the other, among them those with the same light, and so on down to recolorings: a
+grid of views, lights and paints renders each view once and lights each view once for all paints. If a batch
+only recolors, its picture travels with each run; otherwise the scene travels. Each worker keeps its last
+rendering until it works at another batch.
 """
 
 from __future__ import annotations
@@ -13,15 +15,17 @@ import secrets
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
+from itertools import groupby
 from threading import get_ident
 from typing import Final, NamedTuple
 
 from autocolor.arrays import Bytes
-from autocolor.batches.outputs import ARRAY, FORMS
+from autocolor.batches.outputs import ARRAY, marked
 from autocolor.batches.sheet import Box, thumbnail
+from autocolor.batches.table import Variant
 from autocolor.budget import allowing
-from autocolor.errors import AutocolorError
-from autocolor.files.settings import scene_with
+from autocolor.errors import AutocolorError, UsageError
+from autocolor.files.settings import field_of, place_of, scene_with
 from autocolor.images import display_image, smoothed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage
@@ -131,11 +135,6 @@ _ARRIVED: Final[dict[str, Start]] = {}
 """The start of the batch that this process works at for another, by its token."""
 
 
-def forget(start: Start) -> None:
-    """Forget the start of a batch that ended: threads of this process may have unpickled a copy."""
-    _ARRIVED.pop(start.token, None)
-
-
 def _arrived(token: str, pickled: bytes) -> Start:
     """The start of a batch in the process of a worker."""
     start = _ARRIVED.get(token)
@@ -161,10 +160,57 @@ def make(start: Start, drawing: Drawing, task: VariantTask) -> Made:
             shown_image, tier = start.image_of(task.settings, drawing)
             colors = smoothed(shown_image, drawing.smooth)
         small = None if drawing.thumbnail is None else thumbnail(colors, drawing.thumbnail)
-        encoder = None if drawing.form == ARRAY else FORMS[drawing.form].encoded
-        image = colors if encoder is None else encoder(colors, drawing.level, task.mark)
+        is_array = drawing.form == ARRAY
+        image = colors if is_array else marked(drawing.form, colors, drawing.level, task.mark)
     except AutocolorError as error:
         problem = str(error)
     except MemoryError:
         problem = "a picture must fit in memory, and this one does not; make it smaller"
     return Made(task.number, image, problem, time.thread_time() - begun, tier, small)
+
+
+# The order of variants: each costs only the edit from the variant before it.
+
+
+def runs_of(scene: Scene, variants: Sequence[Variant], most: int) -> list[list[int]]:
+    """The numbers of all variants, from 0, in runs of at most `most`, in the order to make them.
+
+    Variants of one frame share as few runs as possible, and several small frames share a run.
+    """
+    keys = dict.fromkeys(key for variant in variants for key in variant.settings)
+    tiers = {key: tier_of(scene, key) for key in keys}
+    dear = sorted((key for key in tiers if tiers[key] > Tier.ENTRIES), key=tiers.__getitem__, reverse=True)
+    frames = [key for key in dear if tiers[key] is Tier.FRAME]
+
+    def values(number: int, some: Sequence[str]) -> list[str]:
+        return [repr(variants[number].settings.get(key)) for key in some]
+
+    # Sorting is stable: recolorings stay in the order of their table.
+    numbers = sorted(range(len(variants)), key=lambda number: values(number, dear))
+    runs: list[list[int]] = [[]]
+    for _, members in groupby(numbers, key=lambda number: values(number, frames)):
+        frame = list(members)
+        if len(runs[-1]) + len(frame) > most and runs[-1]:
+            runs.append([])
+        pieces = cut(frame, most)
+        runs[-1].extend(pieces[0])
+        runs.extend(pieces[1:])
+    return [run for run in runs if run]
+
+
+def cut(numbers: Sequence[int], most: int) -> list[list[int]]:
+    """Consecutive runs of at most `most` numbers.
+
+    >>> cut([0, 1, 2, 3, 4], 4)
+    [[0, 1, 2, 3], [4]]
+    """
+    return [list(numbers[start : start + most]) for start in range(0, len(numbers), most)]
+
+
+def tier_of(scene: Scene, key: str) -> Tier:
+    """What an edit of a key's field costs at most; NOTHING for a key that no variant can set."""
+    try:
+        field = field_of(place_of(scene, key))
+    except UsageError:
+        return Tier.NOTHING
+    return Tier.NOTHING if field is None else field.column.tier

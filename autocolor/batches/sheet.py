@@ -9,9 +9,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Bytes, light_of
-from autocolor.batches.outputs import SHEET_MARK, marked_png
+from autocolor.batches.outputs import SHEET_MARK, marked
 from autocolor.batches.table import Variant
-from autocolor.checks import printable
+from autocolor.checks import is_whole, printable, shown
 from autocolor.errors import UsageError
 
 GROUND: Final = 32
@@ -28,11 +28,8 @@ GAP: Final = 8
 
 LABEL_LINES: Final = 16
 
-MOST_COLUMNS: Final = 32
-"""Limit: columns of a sheet that has the shape of a grid; others are nearly square."""
-
-MOST_ROWS: Final = 64
-"""Limit: rows of a sheet that has the shape of a grid. More rows are set side by side."""
+MOST_COLUMNS: Final = 100
+"""Limit: columns of a sheet that are asked for."""
 
 
 class Box(NamedTuple):
@@ -49,8 +46,8 @@ BOXES: Final = ((400, Box(160, 120)), (2500, Box(80, 60)), (10_000, Box(48, 36))
 class ContactSheet:
     """A contact sheet that is filled cell by cell."""
 
-    def __init__(self, variants: Sequence[Variant]) -> None:
-        """An empty sheet. Raises UsageError for too many variants."""
+    def __init__(self, variants: Sequence[Variant], columns: int | None = None) -> None:
+        """An empty sheet; see `columns_of`. Raises UsageError for too many variants or wrong columns."""
         most = BOXES[-1][0]
         if len(variants) > most:
             raise UsageError(
@@ -59,7 +56,12 @@ class ContactSheet:
             )
         self.box = next(box for count, box in BOXES if len(variants) <= count)
         self._names = [variant.name for variant in variants]
-        self._columns = columns_of(variants)
+        if columns is not None and not is_whole(columns, 1, MOST_COLUMNS):
+            raise UsageError(
+                f"the columns of a sheet must be a whole number from 1 to {MOST_COLUMNS}, not"
+                f" {shown(columns)}; choose another"
+            )
+        self._columns = min(columns, len(variants)) if columns else columns_of(variants)
         rows = -(-len(variants) // self._columns)
         step = self._step
         self._colors = np.full((rows * step[0] + GAP, self._columns * step[1] + GAP, 3), GROUND, np.uint8)
@@ -88,7 +90,7 @@ class ContactSheet:
             while len(label) > 1 and font.getlength(label) > self.box.elements:
                 label = f"{label.rstrip('.')[:-1]}.."
             draw.text((left, top + self.box.lines + 2), label, fill=(INK, INK, INK), font=font)
-        return marked_png(np.asarray(image), None, SHEET_MARK)
+        return marked("png", np.asarray(image), None, SHEET_MARK)
 
     @property
     def _step(self) -> tuple[int, int]:
@@ -105,20 +107,16 @@ class ContactSheet:
 
 
 def columns_of(variants: Sequence[Variant]) -> int:
-    """The columns of a sheet: the values of the last key of a grid, else enough for a nearly square sheet.
-
-    If a grid has too many rows, several rows are set side by side.
-    """
+    """The columns that make a sheet nearly square, and of a grid a multiple of the values of its last key."""
     counts: dict[str, set[str]] = {}
     for variant in variants:
         for key, value in variant.settings.items():
             counts.setdefault(key, set()).add(repr(value))
     axes = [len(values) for values in counts.values() if len(values) > 1]
     square = max(1, math.ceil(math.sqrt(len(variants))))
-    if len(axes) > 1 and math.prod(axes) == len(variants) and axes[-1] <= MOST_COLUMNS:
-        is_high = len(variants) > MOST_ROWS * axes[-1]
-        return axes[-1] * math.ceil(square / axes[-1]) if is_high else axes[-1]
-    return square
+    if len(axes) < 2 or math.prod(axes) != len(variants) or axes[-1] > 2 * square:
+        return square
+    return axes[-1] * max(1, round(square / axes[-1]))
 
 
 def thumbnail(colors: Bytes, box: Box) -> Bytes:

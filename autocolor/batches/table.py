@@ -20,10 +20,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
-import numpy as np
-
 from autocolor.arrays import Bytes
-from autocolor.checks import shown
+from autocolor.checks import brief, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.palette_file import read_palette
 from autocolor.files.paths import LONGEST_STEM, file_stem
@@ -260,7 +258,7 @@ def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
     for key, values in axes.items():
         if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
             raise UsageError(
-                f"{key}: an axis must be a list of values, not {shown(values)}; write it as a list"
+                f"{brief(key)}: an axis must be a list of values, not {shown(values)}; write it as a list"
             )
     return products([variants_of({key: value} for value in values) for key, values in axes.items()])
 
@@ -298,7 +296,8 @@ def check_keys(tables: Iterable[Iterable[Variant]]) -> None:
         seen |= keys
 
 
-EVENLY: Final = re.compile(r"([-+.0-9eE]+)\s*:\s*([-+.0-9eE]+)\s*:\s*([0-9]{1,7})")
+NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+EVENLY: Final = re.compile(rf"\s*({NUMBER})\s*:\s*({NUMBER})\s*:\s*({NUMBER})\s*")
 
 PIECE: Final = re.compile(r""""(?:[^"\\]|\\.)*"?|'[^']*'?|[\[({]|[\])}]|,|[^"'\[({\])},]+""", re.DOTALL)
 """A piece of a list of values: a text in quotes, a bracket, a comma, anything else."""
@@ -324,14 +323,15 @@ def varied(text: str) -> tuple[Variant, ...]:
         )
     taken, rows = dict[str, int](), list[dict[str, object]]()
     if evenly := EVENLY.fullmatch(values):
-        start, stop, count = value_of_text(evenly[1]), value_of_text(evenly[2]), int(evenly[3])
-        is_refused = any(Number().validated(value, (), []) is REFUSED for value in (start, stop))
-        if is_refused or not 2 <= count <= MOST_VARIANTS:
+        start, stop, count = map(float, evenly.groups())
+        is_count = count.is_integer() and 2 <= count <= MOST_VARIANTS
+        if not (is_count and math.isfinite(start) and math.isfinite(stop)):
             raise UsageError(
-                f"--vary {key}: START and STOP must be finite, and COUNT 2 to {MOST_VARIANTS:,}, not"
-                f" {shown(values)}; correct it"
+                f"--vary {brief(key)}: evenly spaced numbers must be START:STOP:COUNT, finite and with a"
+                f" whole COUNT from 2 to {MOST_VARIANTS:,}, not {shown(values)}; correct it"
             )
-        return variants_of({key: float(f"{value:.12g}")} for value in np.linspace(start, stop, count))
+        shares = [step / (count - 1) for step in range(int(count))]
+        return variants_of({key: float(f"{start * (1 - share) + stop * share:.12g}")} for share in shares)
     for value in _split(values, key):
         if not value.startswith("@"):
             rows.append({key: value})
@@ -355,8 +355,8 @@ def _split(text: str, key: str) -> list[str]:
     values.append(value.strip())
     if not all(values):
         raise UsageError(
-            f"--vary {key}: there must be a value before and after each comma, not {shown(text)}; leave a"
-            " comma out, or write none for a field without a value"
+            f"--vary {brief(key)}: there must be a value before and after each comma, not {shown(text)};"
+            " leave a comma out, or write none for a field without a value"
         )
     return values
 
@@ -371,7 +371,8 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     source = Path(path)
     if source.suffix.lower() not in (".csv", ".json"):
         raise UsageError(
-            f"a table of variants must be a file that ends in .csv or .json, not {source.name}; rename it"
+            "a table of variants must be a file that ends in .csv or .json, not"
+            f" {brief(source.name)}; rename it"
         )
     data = read_bytes(source, LARGEST_TABLE)
     rows = _csv_rows if source.suffix.lower() == ".csv" else _json_rows

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 from click.core import ParameterSource
 
+from autocolor.checks import brief
 from autocolor.commands.completion import complete_settings
 from autocolor.commands.options import (
     as_usage,
+    hold_option,
     normals_option,
     size_option,
     smooth_of,
     smooth_option,
-    with_held_exposure,
-    with_normals,
 )
 from autocolor.commands.outputs import progress
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
@@ -31,10 +31,6 @@ from autocolor.commands.sweep import (
 )
 from autocolor.errors import InputError, UsageError
 from ramtek_emu.command_line import tell
-
-if TYPE_CHECKING:
-    from autocolor.files.picture_file import SavedPicture
-    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:
@@ -93,12 +89,7 @@ FRAMES: Final = 48
     help="Frames per second of a film.",
 )
 @click.option("--once", is_flag=True, help="Show the film once; otherwise it begins again at its end.")
-@click.option(
-    "--hold-exposure",
-    is_flag=True,
-    help="Use the exposure that the scene has without --vary, --table and --turn, so that less light is"
-    " darker.",
-)
+@hold_option
 @set_option
 @normals_option
 @jobs_option
@@ -144,18 +135,17 @@ def animate(
         try:
             times_of(tables[0])
         except UsageError as error:
-            raise InputError(f"{table}: {error}") from None
+            raise InputError(f"{brief(table)}: {error}") from None
     tables += [varied(text) for text in varies]
-    start, code = start_of(source, settings, size)
+    samples = 1 if kind == films.STREAM and smooth is None else smooth_of(smooth, size)
+    start, code = start_of(source, settings, size, samples if hold_exposure else 0, normals)
     refuse_keys(start, tables, table)
     tell_paints(start, tables)
-    start = prepared(start, normals, hold_exposure, size)
     is_picture = isinstance(start, tuple)
     own = tables[: 0 if table is None else 1]
     tracks = [*own, *in_step(tables[len(own) :])]
     with as_usage() if table is None else nullcontext():
         frames = frames_of_tracks(scene_in(start), tracks, count, turn=turn)
-    by_size = None if is_picture or kind == films.STREAM else smooth_of(smooth, size)
     with progress(len(frames)) as step, workers(jobs) as executor:
         film = films.animate(
             start,
@@ -164,7 +154,7 @@ def animate(
             frames_per_second=fps,
             loop=not once,
             size=size if is_sized or not is_picture else None,
-            smooth=int(smooth) if smooth else by_size,
+            smooth=samples if smooth or not is_picture else None,
             executor=executor,
             overwrite=force,
             progress=lambda _: step(),
@@ -175,21 +165,3 @@ def animate(
         tell(Loss(film.lossy, film.largest_loss).sentence(film.frames))
     tell(f"wrote {film.path}, {film.frames:,} frame{'' if film.frames == 1 else 's'}")
     context.exit(code)
-
-
-def prepared(
-    start: Scene | SavedPicture, normals: bool, hold_exposure: bool, size: tuple[int, int]
-) -> Scene | SavedPicture:
-    """The scene or the picture, with words that stand for normals or with a held exposure, if asked for."""
-    from autocolor.rendering import render
-
-    if normals and isinstance(start, tuple):
-        raise UsageError(
-            "--normals is for a scene, not for a picture file, which has no normals; leave it out"
-        )
-    scene = with_normals(scene_in(start), normals)
-    if hold_exposure:
-        elements, lines = size
-        picture = start.picture if isinstance(start, tuple) else render(scene, lines, elements)
-        scene = with_held_exposure(scene, picture)
-    return start._replace(scene=scene) if isinstance(start, tuple) else scene

@@ -1,4 +1,4 @@
-"""Options that several commands share: `--normals`, `--paper`, `--paints`, `--size`, `--limit` and `-v`.
+"""Options that several commands share, such as `--normals`, `--paper`, `--hold-exposure` and `--size`.
 
 An invalid value of an option is a UsageError, not an InputError.
 """
@@ -55,6 +55,13 @@ paper_option = click.option(
     is_flag=True,
     help="Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
     " maximum, no smooth edges.",
+)
+
+
+hold_option = click.option(
+    "--hold-exposure",
+    is_flag=True,
+    help="Hold the exposure that SCENE has without other options, so that less light is darker.",
 )
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.checks import shown
 from autocolor.errors import OutputError, UsageError
 from ramtek_emu.command_line import tell
 from ramtek_emu.writing import same_outputs
@@ -39,16 +40,16 @@ def refuse_outputs(
     if output is not None:
         _refuse(output, force)
         if Path(output).suffix.lower() not in ("", ".png"):
-            raise UsageError(f"-o must be the name of a PNG, not {output!r}; end it in .png")
+            raise UsageError(f"-o must be the name of a PNG, not {shown(output)}; end it in .png")
     if save is not None:
         _refuse(save, force)
         if Path(save).suffix.lower() != ".npz":
-            raise UsageError(f"--save must be the name of a picture file, not {save!r}; end it in .npz")
+            raise UsageError(f"--save must be the name of a picture file, not {shown(save)}; end it in .npz")
     for option, path in given.items():
         _refuse(path, force)
         suffix, kind = OTHERS[option]
         if Path(path).suffix.lower() != suffix:
-            raise UsageError(f"{option} must be the name of {kind}, not {path!r}; end it in {suffix}")
+            raise UsageError(f"{option} must be the name of {kind}, not {shown(path)}; end it in {suffix}")
     if same := same_outputs([path for path in (output, save, *given.values()) if path is not None]):
         one, other = same
         raise UsageError(

@@ -9,6 +9,7 @@ import click
 
 from autocolor.commands.completion import complete_lights, complete_views
 from autocolor.commands.options import (
+    hold_option,
     normals_option,
     paper_option,
     size_option,
@@ -18,16 +19,7 @@ from autocolor.commands.options import (
     with_normals,
 )
 from autocolor.commands.outputs import progress, refuse_outputs, tell_written, write_image
-from autocolor.commands.scenes import (
-    SceneSource,
-    created_again,
-    ended,
-    read,
-    reframed,
-    scene_options,
-    set_option,
-    tell_up,
-)
+from autocolor.commands.scenes import SceneSource, ended, read_edited, scene_options, set_option
 
 if TYPE_CHECKING:
     from autocolor.lighting.picture import Picture
@@ -100,11 +92,7 @@ Examples:
 @paper_option
 @size_option
 @smooth_option
-@click.option(
-    "--hold-exposure",
-    is_flag=True,
-    help="Use the exposure that the scene has without --light and --set, so that less light is darker.",
-)
+@hold_option
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.pass_context
 def render(
@@ -130,8 +118,6 @@ def render(
     --layers, --words and --indexed never average pixels. With any of these options, --smooth is 1 by default.
     With --smooth N, their files have N times the lines and elements of the PNG.
     """
-    from autocolor.commands.settings import with_settings
-
     others = {"--layers": layers, "--words": words, "--indexed": indexed}
     is_image_alone = not any(others.values())
     if smooth is None and (paper or not is_image_alone):
@@ -142,16 +128,14 @@ def render(
 
         return render(scene, lines, elements, smooth=smooth_of(smooth, size))
 
+    def prepared(scene: Scene) -> Scene:
+        scene = with_normals(scene.as_in_1983() if paper else scene, normals)
+        if view_name is not None:
+            scene = scene.with_taken_view(view_name)
+        return with_held_exposure(scene, rendered(scene)) if hold_exposure else scene
+
     elements, lines = size
-    report = reframed(read(source), elements / lines)
-    if source is not None:
-        tell_up(report, source)
-    original = with_normals(report.scene.as_in_1983() if paper else report.scene, normals)
-    if view_name is not None:
-        original = original.with_taken_view(view_name)
-    if hold_exposure:
-        original = with_held_exposure(original, rendered(original))
-    edited = created_again(report, with_settings(original, settings), elements / lines)
+    edited, report = read_edited(source, settings, size, prepared)
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None and is_image_alone:

@@ -117,12 +117,14 @@ def read(source: SceneSource | None) -> SceneReport:
     return report
 
 
-def tell_up(report: SceneReport, source: SceneSource) -> None:
+def tell_up(report: SceneReport, source: SceneSource | None) -> None:
     """Print a line on stderr if the mesh seems to lie on its side, unless the user gave `--up`."""
     from autocolor.files.opening import hinted_up
 
     context = click.get_current_context(silent=True)
     is_given = context is not None and context.get_parameter_source("up") is ParameterSource.COMMANDLINE
+    if source is None:
+        return
     if up := "" if is_given else hinted_up(source.path, report.scene.mesh):
         tell(f"autocolor: {source.path} seems to lie on its side; try --up {up}, or give --up z")
 
@@ -145,15 +147,22 @@ def reframed(report: SceneReport, aspect: float) -> SceneReport:
 
 
 def read_edited(
-    source: SceneSource, settings: tuple[str, ...], size: tuple[int, int]
+    source: SceneSource | None,
+    settings: tuple[str, ...],
+    size: tuple[int, int],
+    prepared: Callable[[Scene], Scene] = lambda scene: scene,
 ) -> tuple[Scene, SceneReport]:
-    """The scene of a source with `--set`, for pictures of a size, and the report of what was read."""
+    """The scene of a source with `--set`, for pictures of a size, and the report of what was read.
+
+    The scene is `prepared` before it is edited.
+    """
     from autocolor.commands.settings import with_settings
 
     elements, lines = size
     report = reframed(read(source), elements / lines)
     tell_up(report, source)
-    return created_again(report, with_settings(report.scene, settings), elements / lines), report
+    edited = with_settings(prepared(report.scene), settings)
+    return created_again(report, edited, elements / lines), report
 
 
 def created_again(report: SceneReport, edited: Scene, aspect: float | None = None) -> Scene:

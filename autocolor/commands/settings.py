@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from autocolor.checks import shown
 from autocolor.commands.options import as_usage
 from autocolor.errors import UsageError
 from autocolor.files.settings import field_and_value, field_of, place_of, row_at, scene_with, settable_kinds
@@ -32,7 +33,7 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
         key, equals, text = setting.partition("=")
         if not equals or not key.strip():
             raise UsageError(
-                f"--set must be KEY=VALUE, not {setting!r}; write it as in lights.key.intensity=2"
+                f"--set must be KEY=VALUE, not {shown(setting)}; write it as in lights.key.intensity=2"
             )
         # The last of several names of a field counts, too: a name may be quoted.
         texts.pop(key.strip(), None)

@@ -9,8 +9,17 @@ from typing import TYPE_CHECKING, Final
 import click
 from click.core import ParameterSource
 
+from autocolor.checks import brief
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.options import print_log, size_option, smooth_of, smooth_option
+from autocolor.commands.options import (
+    hold_option,
+    print_log,
+    size_option,
+    smooth_of,
+    smooth_option,
+    with_held_exposure,
+    with_normals,
+)
 from autocolor.commands.outputs import progress
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read_edited, scene_options, set_option
 from autocolor.errors import AutocolorError, InputError, UsageError
@@ -78,8 +87,15 @@ jobs_option = click.option(
 )
 @click.option("--sheet", type=click.Path(), metavar="PNG", help="Write a labeled contact sheet.")
 @click.option(
+    "--columns",
+    type=click.IntRange(1, 100),
+    metavar="N",
+    help="Columns of the contact sheet. Default: about as many as rows.",
+)
+@click.option(
     "--made", type=click.Path(), metavar="CSV", help="Write a table of the pictures and the problems."
 )
+@hold_option
 @jobs_option
 @click.option(
     "--resume",
@@ -105,7 +121,9 @@ def sweep(
     settings: tuple[str, ...],
     output: str,
     sheet: str | None,
+    columns: int | None,
     made: str | None,
+    hold_exposure: bool,
     jobs: int,
     resume: bool,
     size: tuple[int, int],
@@ -119,7 +137,9 @@ def sweep(
     that cannot be made is listed on stderr, and the others are made; if all variants fail, the exit code is
     65, and if some fail, it is 1 with --strict.
     """
-    from autocolor.batches.making import batch
+    import warnings
+
+    from autocolor.batches.making import VariantWarning, batch
     from autocolor.batches.table import products, read_variants, varied
 
     if not varies and table is None:
@@ -131,23 +151,27 @@ def sweep(
     is_sized = context.get_parameter_source("size") is ParameterSource.COMMANDLINE
     tables = [] if table is None else [read_variants(table)]
     tables += [varied(text) for text in varies]
-    start, code = start_of(source, settings, size)
+    samples = smooth_of(smooth, size)
+    start, code = start_of(source, settings, size, samples if hold_exposure else 0)
     refuse_keys(start, tables, table)
     tell_paints(start, tables)
     variants = products(tables)
     is_picture = isinstance(start, tuple)
-    with progress(len(variants)) as step, workers(jobs) as executor:
+    with warnings.catch_warnings(), progress(len(variants)) as step, workers(jobs) as executor:
+        # Problems are printed as messages of the command.
+        warnings.simplefilter("ignore", VariantWarning)
         results = batch(
             start,
             variants,
             output,
             executor=executor,
             size=size if is_sized or not is_picture else None,
-            smooth=int(smooth) if smooth else None if is_picture else smooth_of(smooth, size),
+            smooth=samples if smooth or not is_picture else None,
             level=level,
             overwrite=force,
             resume=resume,
             sheet=sheet,
+            columns=columns,
             table=made,
             progress=lambda _: step(),
         )
@@ -155,20 +179,40 @@ def sweep(
 
 
 def start_of(
-    source: SceneSource, settings: tuple[str, ...], size: tuple[int, int]
+    source: SceneSource,
+    settings: tuple[str, ...],
+    size: tuple[int, int],
+    hold: int = 0,
+    normals: bool = False,
 ) -> tuple[Scene | SavedPicture, int]:
-    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs."""
+    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs.
+
+    With `hold`, the scene has the exposure that it has without `settings`, for a picture that is so smooth.
+    With `normals`, its words stand for normals.
+    """
     from pathlib import Path
 
     from autocolor.commands.recolor import recolored
     from autocolor.files.opening import is_picture
     from autocolor.files.picture_file import read_picture
 
+    def prepared(scene: Scene) -> Scene:
+        from autocolor.rendering import render
+
+        scene, (elements, lines) = with_normals(scene, normals), size
+        return with_held_exposure(scene, render(scene, lines, elements, smooth=hold)) if hold else scene
+
     if is_picture(Path(source.path)):
+        if normals:
+            raise UsageError(
+                "--normals is for a scene, not for a picture file, which has no normals; leave it out"
+            )
         print_log(click.get_current_context())
         saved = read_picture(source.path)
-        return saved._replace(scene=recolored(saved.scene, None, {}, settings)), 0
-    scene, report = read_edited(source, settings, size)
+        original = with_held_exposure(saved.scene, saved.picture) if hold else saved.scene
+        edited = recolored(original, None, {}, settings) if settings else original
+        return saved._replace(scene=edited), 0
+    scene, report = read_edited(source, settings, size, prepared)
     return scene, ended(report, source)
 
 
@@ -182,17 +226,15 @@ def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], 
 
     Raises InputError for a key in the table, UsageError for a key of --vary.
     """
-    from autocolor.files.settings import place_of
+    from autocolor.batches.making import check_keys
 
-    scene = scene_in(start)
     for number, variants in enumerate(tables):
-        for key in dict.fromkeys(key for variant in variants for key in variant.settings):
-            try:
-                place_of(scene, key)
-            except UsageError as error:
-                if table is not None and number == 0:
-                    raise InputError(f"{table}, column {error}") from None
-                raise UsageError(f"--vary {error}") from None
+        try:
+            check_keys(scene_in(start), variants)
+        except UsageError as error:
+            if table is not None and number == 0:
+                raise InputError(f"{brief(table)}, column {error}") from None
+            raise UsageError(f"--vary {error}") from None
 
 
 def tell_paints(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]]) -> None:
@@ -214,16 +256,16 @@ def tell_paints(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]]) 
 
 
 def print_counts(results: list[Result], strict: bool) -> int:
-    """Print on stderr how many pictures were made; returns the exit code."""
+    """Print the problems on stderr, and how many pictures were made; returns the exit code."""
     failed = [result for result in results if result.problem]
+    for result in failed:
+        tell(*(f"autocolor: {brief(result.name)}: {line}" for line in result.problem.splitlines()))
     present = sum(not result.was_made for result in results)
     made = len(results) - len(failed) - present
     counts = [f"made {made:,} picture{'' if made == 1 else 's'}"]
     counts += [f"{present:,} were there"] if present else []
     counts += [f"{len(failed):,} failed"] if failed else []
     tell(", ".join(counts))
-    if failed and len(failed) == len(results):
-        return InputError.exit_code
     return REPAIRED if failed and strict else 0
 
 

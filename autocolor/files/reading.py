@@ -84,7 +84,9 @@ def status_of(path: Path) -> os.stat_result:
     except OSError as error:
         raise unreadable(path, error) from None
     except ValueError:
-        raise InputError(f"a file name must be valid on this system, not {str(path)!r}; correct it") from None
+        raise InputError(
+            f"a file name must be valid on this system, not {shown(str(path))}; correct it"
+        ) from None
 
 
 def read_head(path: Path) -> bytes:
@@ -103,9 +105,10 @@ def refuse_irregular(path: Path, status: os.stat_result) -> None:
 
 def unreadable(path: Path, error: OSError) -> InputError:
     """The error that says why a file could not be read."""
+    name = checks.brief(str(path))
     if error.errno in (errno.ENOENT, errno.ENOTDIR):
-        return MissingInputError(f"{path}: there is no such file or folder; check the name")
-    return InputError(f"{path}: it cannot be read ({reason_of(error)}); check the name and its permissions")
+        return MissingInputError(f"{name}: there is no such file or folder; check the name")
+    return InputError(f"{name}: it cannot be read ({reason_of(error)}); check the name and its permissions")
 
 
 MOST_NESTED: Final = 100

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
-from autocolor.checks import nearest
+from autocolor.checks import brief, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.text_table import value_of_text
 from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of
@@ -86,7 +86,7 @@ def _value_for(field: Field | None, key: str, value: object) -> object:
     default = None if field.default is None else field.default()
     # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
     if default is None or kind.to_plain(key, default).get(key) not in (None, {}):
-        raise UsageError(f"{key}: it {kind.rule()}, not none; only an optional field can be unset")
+        raise UsageError(f"{brief(key)}: it {kind.rule()}, not none; only an optional field can be unset")
     return default
 
 
@@ -106,7 +106,7 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
     has_fields = isinstance(kind, (Nested, RowList))
     if kind is None or (field and not has_fields):
         wrong = table if kind is None else key
-        raise UsageError(f"{key}: there is no field {wrong!r}{nearest(table, kinds)}")
+        raise UsageError(f"{brief(key)}: there is no field {shown(wrong)}{nearest(table, kinds)}")
     if not has_fields or (key == table and fields_of(Scene)[table].is_optional):
         # A whole row can be set and unset, if it is optional.
         return SettingPlace("", "", (table,))
@@ -144,7 +144,7 @@ def _name_and_rest(text: str, names: Iterable[str], key: str, cls: type[Row]) ->
     wrong, _, rest = text.partition(".")
     if rest:
         advice = nearest(wrong, set(written.values())) or f"; add a {cls.noun} with all its keys in a table"
-        raise UsageError(f"{key}: there is no {cls.noun} {wrong!r}{advice}")
+        raise UsageError(f"{brief(key)}: there is no {cls.noun} {shown(wrong)}{advice}")
     return wrong, ""
 
 

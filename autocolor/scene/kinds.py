@@ -41,13 +41,15 @@ class Number(Kind):
     """A finite number within bounds, converted to float.
 
     With `above`, the lower bound is excluded. The infinite value `endless` is accepted, too: it means "no
-    limit", and files leave it out.
+    limit", and files leave it out. If it `turns`, it is an angle in degrees, and between two angles it goes
+    the short way.
     """
 
     at_least: float = -math.inf
     at_most: float = math.inf
     above: bool = False
     endless: float | None = None
+    turns: bool = False
 
     def accepts(self) -> str:
         return "float"
@@ -72,12 +74,25 @@ class Number(Kind):
         is_limited = -math.inf < self.at_least < self.at_most < math.inf and not self.above
         return bar_within(self.at_least, self.at_most) if is_limited else None
 
+    def between(self, one: float, other: float, share: float) -> float:
+        value: float = super().between(one, other, share)
+        return one + share * short_turn(one, other) if self.turns else value
+
     def to_plain(self, name: str, value: float) -> Mapping[str, object]:
         return {name: None if value == self.endless else value}
 
     def difference(self, name: str, one: float, other: float) -> Mapping[str, object]:
         # Write an infinite value, too: a change without the key would not change the value.
         return {} if repr(one) == repr(other) else {name: other}
+
+
+def short_turn(one: float, other: float) -> float:
+    """The turn from one angle to another, in degrees, above -180 to 180; opposite angles turn by 180.
+
+    >>> short_turn(350, 20), short_turn(20, 350), short_turn(0, 180)
+    (30, -30, 180)
+    """
+    return 180 - (180 - (other - one)) % 360
 
 
 @dataclass(frozen=True)

@@ -553,4 +553,4 @@ def _place(kind: str, rows: Sequence[SomeTableRow], name: str) -> int:
     for place, row in enumerate(rows):
         if row.name == name:
             return place
-    raise UsageError(f"there is no {kind} {name!r}{nearest(str(name), [row.name for row in rows])}")
+    raise UsageError(f"there is no {kind} {shown(name)}{nearest(str(name), [row.name for row in rows])}")

@@ -18,7 +18,7 @@ from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.scene.changes import NamedViewChanges, ViewChanges
 from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Problem, Row, Tier, replaced
-from autocolor.scene.kinds import Number, Text, VectorKind
+from autocolor.scene.kinds import Number, Text, VectorKind, short_turn
 from autocolor.scene.row_kinds import Nested
 
 MOST_VIEWS: Final = 64
@@ -42,7 +42,7 @@ class Polar(NamedTuple):
 
     def between(self, other: Polar, share: float) -> Polar:
         """The place at a share of the way to another place. Opposite azimuths turn counterclockwise."""
-        right = 180 - (180 - (other.azimuth - self.azimuth)) % 360
+        right = short_turn(self.azimuth, other.azimuth)
         return Polar(
             self.azimuth + share * right,
             self.elevation + share * (other.elevation - self.elevation),
@@ -84,7 +84,7 @@ class View(Row):
     angle: Annotated[
         float,
         Column(
-            Number(),
+            Number(turns=True),
             Tier.FRAME,
             "The rotation of the horizontal axis of the picture plane.",
             "degrees",

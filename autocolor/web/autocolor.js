@@ -20,7 +20,8 @@
 /** @typedef {{name: string, on: boolean, intensity: number, most: number, units: number[],
  *   plane?: string}} LightRow */
 /**
- * @typedef {{held: string, ambient: number, rows: LightRow[], levels: string[], dither: boolean}} Lights
+ * @typedef {{held: string, exposure: string, ambient: number, rows: LightRow[], levels: string[],
+ *   dither: boolean}} Lights
  */
 /** @typedef {{name: string, paints?: Record<string, Partial<Paint>>,
  *   lights?: Record<string, Record<string, Value>>}} Variant */
@@ -506,10 +507,11 @@ export function stateOfFragment(fragment, picture, first) {
 
 /**
  * The values as a table for `autocolor sweep --table`: a row of keys and a row of values. A surface has its
- * ramp, or its two colors and their blend.
- * @param {State} state @param {State} first @param {string} name @returns {string}
+ * ramp, or its two colors and their blend. If the lights differ from the exported ones, the table also holds
+ * the exposure of the picture, as the page does; otherwise the other light would be shown with its own.
+ * @param {State} state @param {State} first @param {Picture} picture @returns {string}
  */
-export function tableOf(state, first, name) {
+export function tableOf(state, first, { name, lights }) {
   const keys = Object.keys(state).filter((key) => {
     const ramp = `${key.slice(0, key.lastIndexOf("."))}.ramp`;
     if (!(ramp in state)) return true;
@@ -521,6 +523,10 @@ export function tableOf(state, first, name) {
     ["name", ...keys],
     [name, ...keys.map((key) => textOf(state[key]))],
   ];
+  if (lights && keys.some((key) => key.startsWith("lights.") && !same(state[key], first[key]))) {
+    rows[0].push("exposure");
+    rows[1].push(lights.exposure);
+  }
   return rows.map((row) => row.map(cell).join(",") + "\r\n").join("");
 }
 
@@ -1498,10 +1504,10 @@ function sharing(desk, hosted) {
     canvas.toBlob((blob) => blob && download(blob, `${stem}.png`));
   }
   function saveValues() {
-    download(
-      new Blob([tableOf(desk.state, first, picture.name)], { type: "text/csv" }),
-      `${stem}-values.csv`,
-    );
+    const table = tableOf(desk.state, first, picture);
+    download(new Blob([table], { type: "text/csv" }), `${stem}-values.csv`);
+    if (/^[^\n]*,exposure\r\n/.test(table))
+      desk.say("The lights differ, so the table also holds the exposure for autocolor sweep.");
   }
   return div(
     "sharing",

@@ -36,6 +36,7 @@ for twice the code in the browser.
 
 from __future__ import annotations
 
+import json
 import zlib
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
@@ -46,7 +47,7 @@ import numpy as np
 from autocolor.arrays import HALF, Bytes, Singles, Words, underflowing
 from autocolor.batches.table import Rows, Variant, variants_of
 from autocolor.budget import require_memory
-from autocolor.checks import listed
+from autocolor.checks import brief, listed, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.settings import place_of, scene_with
 from autocolor.images import display_image, middles
@@ -55,6 +56,7 @@ from autocolor.lighting.picture import IntensityRange, Picture, check_surfaces
 from autocolor.mapping.bands import colored_surfaces
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.intensity import (
+    WHOLE,
     fractions_by_surface,
     has_extent,
     levels_of,
@@ -67,7 +69,7 @@ from autocolor.scene.columns import fields_of
 from autocolor.scene.curves import Fractions
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.lights import Light
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import OBJECT, Scene
 from autocolor.scene.surfaces import Paint
 from autocolor.sending import shown_words
 
@@ -100,6 +102,9 @@ LARGEST_SHARE: Final = 65535
 
 TILE: Final = 64
 """The thresholds of a tile of ordered dither."""
+
+EQUALIZE: Final = "equalize"
+"""The mapping that follows the picture."""
 
 HELD: Final = "Exposure is held as exported: with less light, the picture is darker."
 
@@ -279,14 +284,20 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
     """The contributions of the lights to an image, and the levels of intensities, for its exposure.
 
     Intensities are relative to the scale of the picture. The values: `held`, a sentence about the exposure;
-    `ambient`; `rows` as `light_rows`, each with its `units` and its `plane`; `levels`, the thresholds of each
-    surface as float32, low byte first, by zlib; `dither`.
+    `exposure`, the ranges that it holds, as a value of a table; `ambient`; `rows` as `light_rows`, each with
+    its `units` and its `plane`; `levels`, the thresholds of each surface as float32, low byte first, by zlib;
+    `dither`.
     """
     scene, picture = image.scene, image.picture
     if not image.has_light_in_words:
         raise UsageError(
             "a page with lights must have words that stand for levels, not for normals; render the scene with"
             ' words="levels", or leave the lights out'
+        )
+    if scene.mapping == EQUALIZE:
+        raise InputError(
+            "a page with lights must have a mapping that stays with the exposure, not equalize, which follows"
+            " the picture; set mapping to linear, or leave the lights out"
         )
     if not scene.lights:
         raise InputError("a page with lights must have a light in its scene, not none; leave the lights out")
@@ -317,6 +328,7 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
     }
     return {
         "held": HELD,
+        "exposure": _exposure_text(picture, extents),
         "ambient": scene.ambient / picture.scale,
         "rows": [{**row, **planes[row["name"]]} for row in light_rows(scene)],
         "levels": [
@@ -325,6 +337,18 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
         ],
         "dither": scene.dither == "ordered",
     }
+
+
+def _exposure_text(picture: Picture, extents: Mapping[int, IntensityRange]) -> str:
+    """The ranges that are mapped, as a value of `exposure` in a table for `autocolor sweep`."""
+    ranges = []
+    for number, extent in extents.items():
+        name = picture.surfaces[number - 1] if number else OBJECT
+        # A surface with the name of the object's range has that range.
+        if has_extent(extent) and (number == WHOLE or name != OBJECT):
+            limits = extent.minimum * picture.scale, extent.maximum * picture.scale
+            ranges.append(f"{json.dumps(name, ensure_ascii=False)} = {[*limits]}")
+    return f"{{ {', '.join(ranges)} }}"
 
 
 @underflowing
@@ -415,7 +439,9 @@ def _variant_values(
         try:
             scene = scene_with(image.scene, variant.settings)
         except InputError as error:
-            raise InputError(f"variant {variant.name!r}: {problem}" for problem in error.problems) from None
+            raise InputError(
+                f"variant {shown(variant.name)}: {problem}" for problem in error.problems
+            ) from None
         changes = {
             name: _changes(surface["paint"], paint_values(scene.surface(name).paint))
             for name, surface in surfaces.items()
@@ -445,6 +471,9 @@ def check_variants(scene: Scene, variants: Sequence[Variant], lights: bool) -> N
                 problem = "its colors must stand for a paint, not for a scalar; leave this key out"
             elif is_strength and not lights:
                 problem = "the page must have lights for it; add --lights (lights=True in Python)"
+            elif key == "exposure" and lights:
+                # A table that was saved from a page has it. The page holds its own exposure.
+                continue
             elif not is_paint and not is_strength:
                 problem = (
                     "a variant of a page must change paints, such as surfaces.body.object_color, or `on` and"
@@ -452,7 +481,7 @@ def check_variants(scene: Scene, variants: Sequence[Variant], lights: bool) -> N
                 )
             else:
                 continue
-            raise UsageError(f"variant {variant.name!r}: {key}: {problem}")
+            raise UsageError(f"variant {shown(variant.name)}: {brief(key)}: {problem}")
 
 
 def _changes(old: Mapping[str, Any], new: Mapping[str, Any], keys: Sequence[str] = ()) -> dict[str, Any]:

@@ -178,12 +178,10 @@ def write_fields(
 
     Raises MissingInputError if the stream cannot be read to its end.
     """
-    from ramtek_emu.films import Loss, most_fields, write_film
+    from ramtek_emu.films import MOST_FIELDS, Loss, write_film
     from ramtek_emu.host.pipe import StreamFields
 
-    scan_out = session.display.scan_out
-    most = most_fields(path, scan_out.lines, scan_out.elements)
-    film = StreamFields(session, read, most, lambda: run.ends)
+    film = StreamFields(session, read, MOST_FIELDS, lambda: run.ends)
     fields, loss = iter(film), Loss()
 
     def write() -> None:
@@ -197,8 +195,8 @@ def write_fields(
         return
     if film.left_out:
         tell(
-            f"a film such as {path} must have at most {most:,} frames, not more: it has the first"
-            f" {most - 1:,} and the last; make fewer with --every"
+            f"a film such as {path} must have at most {MOST_FIELDS:,} frames, not more: it has the first"
+            f" {MOST_FIELDS - 1:,} and the last; make fewer with --every"
         )
     if loss.fields:
         tell(loss.sentence(film.count))

@@ -18,12 +18,12 @@ from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError, OutputExistsError, RamtekError
 from ramtek_emu.films import (
     FORMATS,
-    MOST_FIELDS,
+    WEBP_GROUP,
     TimedFilm,
     differing_area,
-    most_fields,
     write_film,
 )
+from ramtek_emu.writing import Output
 from tests.ramtek_emu.film_reader import decoded, durations_of
 
 
@@ -120,20 +120,20 @@ def test_a_rectangle_holds_all_that_differs_and_no_more() -> None:
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
-def test_fields_are_taken_one_by_one(suffix: str, tmp_path: Path) -> None:
+def test_fields_are_taken_one_by_one_or_in_groups(suffix: str, tmp_path: Path) -> None:
     references: list[weakref.ref[Colors]] = []
     most = 0
 
     def made() -> Iterator[Colors]:
         nonlocal most
-        for field in noise(12):
+        for field in noise(60):
             copy = np.copy(field)
             references.append(weakref.ref(copy))
             most = max(most, sum(reference() is not None for reference in references))
             yield copy
 
     write_film(tmp_path / f"film{suffix}", made(), fields_per_second=24)
-    assert 1 <= most <= 4
+    assert 1 <= most <= 4 + (WEBP_GROUP if suffix == ".webp" else 0)
 
 
 PATTERN = "numbered pictures must have one number in their name, as in frame-{number:04}.png, not "
@@ -192,11 +192,44 @@ def test_numbered_pictures_are_the_fields(tmp_path: Path) -> None:
     assert np.array_equal(decoded(tmp_path / names[1]), [fields[6]])
 
 
-def test_a_webp_of_unknown_length_has_fewer_large_fields() -> None:
-    assert most_fields("a.apng", 480, 640) == most_fields("{number}.png", 1, 1) == MOST_FIELDS
-    assert most_fields("a.WebP", 480, 640) == 3495
-    assert most_fields("a.webp", 1, 1) == MOST_FIELDS
-    assert most_fields("a.webp", 1 << 20, 1 << 20) == 1
+def test_a_webp_is_written_in_groups_of_fields(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ramtek_emu.films.WEBP_GROUP_PIXELS", 3 * 600)
+    moving = [np.roll(noise(1)[0], step, axis=0) for step in range(3)]
+    # The repeats at the borders of groups are shown for longer.
+    fields = [*noise(2), *moving, *moving[-1:] * 3, *noise(2)[:1]]
+    written = 0
+    write = Output.write
+
+    def counted(output: Output, data: bytes) -> None:
+        nonlocal written
+        written += 1
+        write(output, data)
+
+    monkeypatch.setattr(Output, "write", counted)
+    write_film(tmp_path / "film.webp", fields, fields_per_second=10, loop=False)
+    assert np.array_equal(decoded(tmp_path / "film.webp"), [*noise(2), *moving, noise(2)[0]])
+    assert durations_of(tmp_path / "film.webp") == [100, 100, 100, 100, 400, 100]
+    # A header and two groups of three fields.
+    assert written == 3
+
+
+def test_a_webp_says_whether_fields_have_transparent_pixels(tmp_path: Path) -> None:
+    for count in (1, 2):
+        fields = [noise(1)[0].copy() for _ in range(count)]
+        fields[-1][3, 4] = fields[-1][15, 20] = 0
+        write_film(tmp_path / "film.webp", fields, fields_per_second=10, overwrite=True)
+        first, *others = map(Image.fromarray, fields)
+        first.save(tmp_path / "other.webp", save_all=True, append_images=others, lossless=True, method=0)
+        flags = (tmp_path / "film.webp").read_bytes()[20]
+        # The flag of transparent pixels is 16, and that of an animation 2.
+        assert flags == (tmp_path / "other.webp").read_bytes()[20] == 18 if others else flags == 2
+
+
+def test_a_webp_ends_at_its_largest_size(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ramtek_emu.films.LARGEST_RIFF", 5000)
+    with pytest.raises(OutputError, match="a WebP must have at most 4 GB, not more"):
+        write_film(tmp_path / "film.webp", noise(20), fields_per_second=10)
+    assert os.listdir(tmp_path) == []
 
 
 @given(

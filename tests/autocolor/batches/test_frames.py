@@ -77,6 +77,17 @@ def test_a_loop_leaves_out_the_frame_that_would_repeat_the_first() -> None:
     assert frames(SCENE, [RED, BLUE], 2, loop=True)[1].settings == {"surfaces.wall.object_color": "#800080"}
 
 
+def test_an_angle_turns_the_short_way_from_each_variant_to_the_next() -> None:
+    for angles, middles in (
+        ((350, 20), [365]),
+        ((20, 350), [5]),
+        ((0, 180, 0), [90, 270]),
+        ((-170, 170), [-180]),
+    ):
+        made = frames(SCENE, [{"view.angle": a} for a in angles], 2 * len(angles) - 1, loop=False)
+        assert values(made, "view.angle")[1::2] == middles
+
+
 def eyes(scene: Scene, made: tuple[Variant, ...]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """The eyes of frames, (n, 3)."""
     return np.array([scene_with(scene, frame.settings).view.eye for frame in made])

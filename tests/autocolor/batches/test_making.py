@@ -15,7 +15,6 @@ from concurrent.futures import (
     ThreadPoolExecutor,
 )
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -38,11 +37,10 @@ from autocolor import (
     write_picture,
 )
 from autocolor.batches import making
-from autocolor.batches.making import MORE_THAN_WORKERS
+from autocolor.batches.making import MORE_THAN_WORKERS, VariantWarning
 from autocolor.batches.outputs import SHEET_MARK, mark_in
 from autocolor.batches.table import Result, Variant, variants_of
 from autocolor.files.settings import scene_with
-from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
 from tests.small import wall_scene
 
@@ -55,6 +53,12 @@ GRID = grid(
     }
 )
 PAINTS = grid({"surfaces.wall.object_color": [[n, 255 - n, 128] for n in range(0, 250, 10)]})
+
+
+@pytest.fixture
+def alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of one variant."""
+    monkeypatch.setattr(making, "VARIANTS_OF_RUN", 1)
 
 
 class Reversed(Executor):
@@ -87,11 +91,6 @@ class Late(Future[Any]):
         return super().result(timeout)
 
 
-def wait_last(pending: dict[Future[Any], Any], **_: object) -> Any:
-    """The last future as the only one that is done."""
-    return SimpleNamespace(done={list(pending)[-1]})
-
-
 def rows_of(table: Path) -> list[dict[str, str]]:
     with open(table, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
@@ -118,32 +117,15 @@ def test_the_pictures_are_those_of_each_scene_rendered_alone_in_the_order_of_the
     assert sorted(tiers) == [Tier.ENTRIES] * 8 + [Tier.MIX] * 2 + [Tier.FRAME] * 2  # type: ignore[type-var]
 
 
-def test_any_executor_gives_the_same_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_any_executor_gives_the_same_bytes() -> None:
     scene = wall_scene()
     expected = images(batch(scene, GRID, size=SIZE, form="png"))
     with ThreadPoolExecutor(3) as threads:
-        assert images(batch(scene, GRID, size=SIZE, form="png", executor=threads, runs=2)) == expected
-    monkeypatch.setattr(making, "wait", wait_last)
-    assert images(batch(scene, GRID, size=SIZE, form="png", executor=Reversed(), runs=1)) == expected
+        assert images(batch(scene, GRID, size=SIZE, form="png", executor=threads)) == expected
+    assert images(batch(scene, GRID, size=SIZE, form="png", executor=Reversed())) == expected
 
 
-@pytest.mark.parametrize(("rows", "count"), [(PAINTS, 1), (GRID, 0)])
-def test_a_picture_is_rendered_here_for_an_executor_if_it_is_the_picture_of_all_variants(
-    monkeypatch: pytest.MonkeyPatch, rows: tuple[Variant, ...], count: int
-) -> None:
-    rendered = []
-
-    def counted(scene: Scene, lines: int, elements: int) -> Rendering:
-        rendered.append(rendering(scene, lines, elements))
-        return rendered[-1]
-
-    monkeypatch.setattr(making, "rendering", counted)
-    with ThreadPoolExecutor(1) as threads:
-        results = batch(wall_scene(), rows, size=SIZE, executor=threads)
-    assert len(rendered) == count
-    assert [result.tier for result in results].count(Tier.FRAME) == (0 if count else 2)
-
-
+@pytest.mark.filterwarnings("ignore::autocolor.batches.making.VariantWarning")
 def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None:
     scene = wall_scene()
     source = scene, render(scene, 12, 16)
@@ -152,7 +134,7 @@ def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None
         for given, rows in ((scene, variants), (scene, PAINTS), (source, PAINTS)):
             size = SIZE if given is scene else None
             here = batch(given, rows, size=size, form="webp")
-            there = batch(given, rows, size=size, form="webp", executor=processes, runs=4)
+            there = batch(given, rows, size=size, form="webp", executor=processes)
             assert [result.image for result in there] == [result.image for result in here]
             assert [result.problem for result in there] == [result.problem for result in here]
 
@@ -169,13 +151,13 @@ def test_a_cluster_of_dask_gives_the_same_bytes() -> None:
         client.get_executor() as executor,
     ):
         for rows in (GRID, PAINTS):
-            there = batch(scene, rows, size=SIZE, form="png", executor=executor, runs=3)
+            there = batch(scene, rows, size=SIZE, form="png", executor=executor)
             assert images(there) == images(batch(scene, rows, size=SIZE, form="png"))
 
 
 @pytest.mark.parametrize("executor", [None, Reversed()])
 def test_ordered_results_come_in_the_order_of_the_variants(executor: Executor | None) -> None:
-    results = list(batch_results(wall_scene(), GRID, size=SIZE, ordered=True, runs=2, executor=executor))
+    results = list(batch_results(wall_scene(), GRID, size=SIZE, ordered=True, executor=executor))
     assert [result.name for result in results] == [variant.name for variant in GRID]
     if executor is None:
         # The last key of the grid, the view, changes each time.
@@ -183,15 +165,12 @@ def test_ordered_results_come_in_the_order_of_the_variants(executor: Executor | 
 
 
 @pytest.mark.parametrize("ordered", [False, True])
-def test_an_executor_has_a_few_more_runs_than_workers_however_many_variants_there_are(
-    monkeypatch: pytest.MonkeyPatch, ordered: bool
-) -> None:
-    if not ordered:
-        monkeypatch.setattr(making, "wait", wait_last)
+@pytest.mark.usefixtures("alone")
+def test_an_executor_has_a_few_more_runs_than_workers_however_many_variants_there_are(ordered: bool) -> None:
     executor = Reversed()
     count = 0
     rows = unnamed(PAINTS * 4)
-    for _ in batch_results(wall_scene(), rows, size=SIZE, executor=executor, runs=1, ordered=ordered):
+    for _ in batch_results(wall_scene(), rows, size=SIZE, executor=executor, ordered=ordered):
         count += 1
         assert len(executor.pending) <= executor._max_workers + MORE_THAN_WORKERS
     assert count == 100
@@ -199,8 +178,7 @@ def test_an_executor_has_a_few_more_runs_than_workers_however_many_variants_ther
 
 
 @pytest.mark.parametrize("ordered", [False, True])
-def test_each_worker_gets_a_run_of_a_small_batch(ordered: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(making, "wait", wait_last)
+def test_each_worker_gets_a_run_of_a_small_batch(ordered: bool) -> None:
     executor = Reversed()
     results = batch(wall_scene(), PAINTS[:7], size=SIZE, executor=executor, ordered=ordered)
     assert (len(results), executor.most) == (7, executor._max_workers)
@@ -210,10 +188,11 @@ def unnamed(variants: tuple[Variant, ...]) -> list[dict[str, object]]:
     return [dict(variant.settings) for variant in variants]
 
 
+@pytest.mark.usefixtures("alone")
 def test_a_batch_that_is_closed_cancels_what_waits_and_leaves_whole_files(tmp_path: Path) -> None:
     executor = Reversed()
     results = batch_results(
-        wall_scene(), PAINTS, tmp_path / "{number}.png", size=SIZE, executor=executor, runs=1, ordered=True
+        wall_scene(), PAINTS, tmp_path / "{number}.png", size=SIZE, executor=executor, ordered=True
     )
     first = list(itertools.islice(results, 3))
     results.close()
@@ -259,6 +238,7 @@ def test_a_stopped_batch_is_resumed_and_loses_nothing(tmp_path: Path) -> None:
     assert [row["path"] for row in rows_of(table)] == [result.path for result in results]
 
 
+@pytest.mark.filterwarnings("ignore::autocolor.batches.making.VariantWarning")
 def test_what_differs_is_made_again_and_nothing_else(tmp_path: Path) -> None:
     scene, output = wall_scene(), tmp_path / "{number}.png"
 
@@ -273,21 +253,25 @@ def test_what_differs_is_made_again_and_nothing_else(tmp_path: Path) -> None:
     rows = unnamed(PAINTS)
     rows[3] = {"surfaces.wall.object_color": "red"}
     assert made(scene, rows) == [4]
-    # A damaged file, as after a power failure, and a missing file.
+    # A file that is damaged in its middle, a missing file, and an empty file, as after a power failure.
+    data = bytearray((tmp_path / "7.png").read_bytes())
+    data[len(data) // 2] ^= 1
+    (tmp_path / "7.png").write_bytes(data)
+    (tmp_path / "9.png").unlink()
+    (tmp_path / "11.png").write_bytes(b"")
+    assert made(scene, rows) == [7, 9, 11]
+    # A file without its end is not known as a picture of a batch.
     (tmp_path / "7.png").write_bytes((tmp_path / "7.png").read_bytes()[:-1])
-    (tmp_path / "9.png").unlink()
-    (tmp_path / "11.png").write_bytes(b"")
-    damaged, *_ = (each for each in batch(scene, rows, output, size=SIZE, resume=True) if each.problem)
-    assert damaged.name == PAINTS[6].name
-    (tmp_path / "9.png").unlink()
-    (tmp_path / "11.png").write_bytes(b"")
+    cut, *_ = (each for each in batch(scene, rows, output, size=SIZE, resume=True) if each.problem)
+    assert cut.name == PAINTS[6].name
     results = batch(scene, rows, output, size=SIZE, resume=True, overwrite=True)
-    assert [number for number, result in enumerate(results, 1) if result.was_made] == [7, 9, 11]
+    assert [number for number, result in enumerate(results, 1) if result.was_made] == [7]
     assert made(scene.replace(ambient=0.3), rows) == everything
     assert made(scene.replace(ambient=0.3), rows, level=9) == everything
     assert made(scene.replace(ambient=0.3), rows, smooth=2, level=9) == everything
 
 
+@pytest.mark.filterwarnings("ignore::autocolor.batches.making.VariantWarning")
 def test_the_file_of_a_stranger_is_never_overwritten_unless_that_is_asked(tmp_path: Path) -> None:
     scene, output = wall_scene(), tmp_path / "{name}.png"
     rows = variants_of([{"name": "a", "ambient": 0.1}, {"name": "b", "ambient": 0.2}])
@@ -308,6 +292,7 @@ def test_the_file_of_a_stranger_is_never_overwritten_unless_that_is_asked(tmp_pa
     assert mark_in(str(tmp_path / "a.png"), "png") != ""
 
 
+@pytest.mark.filterwarnings("ignore::autocolor.batches.making.VariantWarning")
 def test_one_bad_variant_is_in_the_table_and_loses_no_other(tmp_path: Path) -> None:
     rows: list[dict[str, object]] = [
         {"name": "good", "ambient": 0.1},
@@ -370,11 +355,31 @@ ERRORS = [BrokenExecutor("a process died"), CancelledError(), KilledWorker("w"),
 @pytest.mark.parametrize("at_once", [False, True])
 @pytest.mark.parametrize("error", ERRORS)
 def test_an_executor_that_breaks_is_told_in_a_sentence(error: Exception, at_once: bool) -> None:
-    is_told = isinstance(error, RuntimeError) if at_once else type(error) is not RuntimeError
+    is_told = at_once or type(error) is not RuntimeError
     with pytest.raises(UnavailableError if is_told else type(error)) as raised:
         batch(wall_scene(), PAINTS, size=SIZE, executor=Broken(error, at_once))
     if is_told:
         assert str(raised.value).startswith("the workers of a batch must run until it ends, and they stopped")
+
+
+class Less(Executor):
+    """Runs each task at once, and returns something else than its result."""
+
+    def __init__(self, changed: Callable[[list[Any]], object]) -> None:
+        self.changed = changed
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **_: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_result(self.changed(function(*arguments)))
+        return future
+
+
+@pytest.mark.parametrize(
+    "changed", [lambda made: made[:-1], lambda made: None, lambda made: [None, *made[1:]]]
+)
+def test_an_executor_that_returns_something_else_is_refused(changed: Callable[[list[Any]], object]) -> None:
+    with pytest.raises(UnavailableError, match="an executor must return what its function returns"):
+        batch(wall_scene(), PAINTS, size=SIZE, executor=Less(changed))
 
 
 def test_a_full_disk_ends_the_batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -389,16 +394,26 @@ def test_a_full_disk_ends_the_batch(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 def test_a_folder_that_cannot_be_made_is_a_problem_of_its_variants(tmp_path: Path) -> None:
     (tmp_path / "red").write_bytes(b"")
     rows = variants_of([{"name": "red", "background": "red"}, {"name": "navy", "background": "navy"}])
-    one, other = batch(wall_scene(), rows, tmp_path / "{name}" / "a.png", size=SIZE)
+    with pytest.warns(VariantWarning, match="red: an output must have a folder"):
+        one, other = batch(wall_scene(), rows, tmp_path / "{name}" / "a.png", size=SIZE)
     assert "an output must have a folder" in one.problem
     assert (other.problem, other.path) == ("", str(tmp_path / "navy" / "a.png"))
 
 
-def test_each_problem_is_logged_as_a_warning(caplog: pytest.LogCaptureFixture) -> None:
-    rows = [{"name": name, "background": name} for name in ("red", "no", "nay")]
-    results = batch(wall_scene(), rows, size=SIZE)
-    assert caplog.messages == [f"{result.name}: {result.problem}" for result in results[1:]]
-    assert {record.levelname for record in caplog.records} == {"WARNING"}
+def test_each_problem_is_a_warning_and_all_problems_are_an_error(tmp_path: Path) -> None:
+    names = ("red", "no", "nay")
+    rows = [{"name": name, "background": name} for name in names]
+    with pytest.warns(VariantWarning) as warned:
+        results = batch(wall_scene(), rows, size=SIZE)
+    assert [str(each.message) for each in warned] == [f"{each.name}: {each.problem}" for each in results[1:]]
+    assert {each.filename for each in warned} == {__file__}
+    table = tmp_path / "made.csv"
+    with pytest.raises(InputError) as refused:
+        batch(wall_scene(), grid({"background": [f"no{n}" for n in range(12)]}), size=SIZE, table=table)
+    assert len(refused.value.problems) == 11
+    assert refused.value.problems[0].startswith('no0: background must be "#rrggbb"')
+    assert refused.value.problems[-1] == "and 2 problems more"
+    assert len(rows_of(table)) == 12
 
 
 def test_a_sheet_is_never_written_over_a_picture_of_another_batch(tmp_path: Path) -> None:
@@ -416,7 +431,6 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     scene = wall_scene()
     yield {"output": "same.png"}, UsageError, "a name pattern must give each variant a file of its own"
     yield {"output": "a.jpg"}, UsageError, "the pictures of a batch must be written to files that end in"
-    yield {"runs": 0}, UsageError, "runs must be a whole number from 1 to 10,000, not 0"
     yield {"executor": 2}, UsageError, "an executor must be one of concurrent.futures or the like, not 2"
     yield {"size": (16,)}, UsageError, "the size of pictures must be elements and lines, each from 1 to 16384"
     yield {"size": (16, 9999), "smooth": 2}, UsageError, "the size of pictures must be elements and lines"
@@ -435,9 +449,20 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     yield {"size": 640}, UsageError, "the size of pictures must be elements and lines"
     yield {"source": (scene, render(scene, 3, 4)), "size": 4}, UsageError, "the size and smooth of a batch"
     yield {"executor": ThreadPoolExecutor}, UsageError, "an executor must be one of concurrent.futures"
-    long = {"output": "x" * 4090 + "{name}.png"}
-    yield long, UsageError, "the path of a picture must have at most 4,096 characters, not 4,1"
+    deep = {"output": "d/" * 1500 + "{name}.png"}
+    yield deep, UsageError, "the path of a picture must have at most 1,024 characters, not 3,0"
     yield {"size": (9000, 9000)}, UsageError, "the arrays of a batch must have at most 4,000,000,000 bytes"
+    yield {"variants": []}, UsageError, "a batch must have at least one variant, not none; add a row"
+    unknown = "surfaces.wal.blend: there is no surface 'wal'; did you mean 'wall'?"
+    yield {"variants": [{}, {"surfaces.wal.blend": 1}]}, UsageError, unknown
+    unknown = "surfaces.wall.blnd: surface 'wall': there is no field 'blnd'; did you mean 'blend'?"
+    yield {"variants": [{}, {"surfaces.wall.blnd": 1}]}, UsageError, unknown
+    yield (
+        {"overwite": True},
+        UsageError,
+        "there is no option 'overwite' of a batch; did you mean 'overwrite'?",
+    )
+    yield {"columns": 3}, UsageError, "columns are for a contact sheet; give a sheet, or leave them out"
     yield {"variants": "red"}, UsageError, "variants must be a list of tables or of Variants, not 'red'"
 
 

@@ -53,9 +53,9 @@ def test_a_sheet_has_the_shape_of_a_grid_else_it_is_nearly_square() -> None:
     assert columns_of(grid({"a": range(24)})) == 5
     assert columns_of(grid({"a": range(2), "b": range(40)})) == 9
     assert columns_of(variants_of([{"a": 1, "b": 1}, {"a": 2, "b": 2}, {"a": 3}])) == 2
-    assert columns_of(grid({"a": range(24), "b": range(3)})) == 3
-    # A thousand rows of two stand side by side.
-    assert columns_of(grid({"a": range(1000), "b": range(2)})) == 46
+    # Rows of a high grid stand side by side.
+    assert columns_of(grid({"a": range(24), "b": range(3)})) == 9
+    assert columns_of(grid({"a": range(1000), "b": range(2)})) == 44
     assert columns_of(()) == 1
 
 
@@ -83,6 +83,18 @@ def test_a_sheet_has_each_thumbnail_in_its_cell_and_a_label_below() -> None:
         assert label.max() > 150
     # A long label ends within its cell.
     assert (field[:, GAP + box.elements : GAP + step[1]] == GROUND).all()
+
+
+def test_a_sheet_has_the_columns_that_it_is_given() -> None:
+    rows = grid({"a": range(24), "b": range(3)})
+    box, labels = ContactSheet(rows, 12).box, 16
+    with Image.open(BytesIO(ContactSheet(rows, 12).png())) as sheet:
+        assert sheet.size == (12 * (box.elements + GAP) + GAP, 6 * (box.lines + labels + GAP) + GAP)
+    with Image.open(BytesIO(ContactSheet(rows[:2], 100).png())) as sheet:
+        assert sheet.width == 2 * (box.elements + GAP) + GAP
+    for wrong in (0, 101, True, "3"):
+        with pytest.raises(UsageError, match="the columns of a sheet must be a whole number from 1 to 100"):
+            ContactSheet(rows, wrong)  # type: ignore[arg-type]
 
 
 def test_a_sheet_of_many_variants_has_smaller_thumbnails_and_of_too_many_is_refused() -> None:

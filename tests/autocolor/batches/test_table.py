@@ -269,4 +269,9 @@ def test_the_table_of_results_has_a_row_for_each_with_every_key(
     for row, result in zip(read, results, strict=True):
         for key in keys:
             value = result.settings.get(key, "")
-            assert row[key] == text_of(value)
+            assert row[key] == (json.dumps(value) if isinstance(value, list) else text_of(value))
+
+
+def test_evenly_spaced_numbers_may_be_as_far_apart_as_numbers_are() -> None:
+    values = [variant.settings["a"] for variant in varied("a=-1e308:1e308:5")]
+    assert values == [-1e308, -5e307, 0, 5e307, 1e308]

@@ -90,8 +90,35 @@ def test_failed_variants_are_listed(
     ran = run("sweep", "scene", "--vary", f"ambient={values}", "-o", "{name}.png", *strict, *SMALL)
     assert ran.code == code
     assert ("autocolor: x: ambient must be" in ran.err) == ("x" in values)
-    counts = {"0.1,x": "made 1 picture, 1 failed", "x,-1": "made 0 pictures, 2 failed"}
+    counts = {"0.1,x": "made 1 picture, 1 failed", "x,-1": "not -1"}
     assert ran.err.endswith(f"{counts.get(values, 'made 2 pictures')}\n")
+    assert "Warning" not in ran.err
+
+
+@pytest.mark.parametrize("smooth", ["1", "2"])
+def test_the_exposure_is_held_as_render_and_animate_hold_it(saved: Path, run: Run, smooth: str) -> None:
+    """It is the exposure of the scene before --set, of a picture that is as smooth."""
+    key = "lights.key.intensity"
+    common = ("--hold-exposure", "--set", "lights.key.on=true", "--set", "ambient=0.01", *SMALL[:2])
+    options = (*common, "--smooth", smooth)
+    assert run("render", "scene", *options, "--set", f"{key}=0.3", "-o", "render.png").code == 0
+    assert run("sweep", "scene", *options, "--vary", f"{key}=0.3", "-o", "{name}.png").code == 0
+    film = ("--vary", f"{key}=0.3,1", "--frames", "2", "-o", "film.apng")
+    assert run("animate", "scene", *options, *film).code == 0
+    assert np.array_equal(pixels("0.3.png"), pixels("render.png"))
+    assert np.array_equal(pixels("film.apng"), pixels("render.png"))
+    # A picture file has the exposure of its picture.
+    vary = ("--vary", "mapping=gamma")
+    for name, more in (("held", ("--hold-exposure",)), ("auto", ())):
+        assert run("sweep", "scene.npz", *vary, *more, "-o", f"{name}.png").code == 0
+    assert np.array_equal(pixels("held.png"), pixels("auto.png"))
+
+
+def test_a_sheet_has_the_columns_that_are_asked_for(folder: Path, run: Run) -> None:
+    sheet = ("--sheet", "s.png", "--columns", "4", *SMALL)
+    assert run("sweep", "scene", "--vary", "ambient=0:1:4", "-o", "{name}.png", *sheet).code == 0
+    with Image.open("s.png") as image:
+        assert image.width > 4 * 160
 
 
 @pytest.mark.parametrize(
@@ -109,6 +136,9 @@ def test_failed_variants_are_listed(
         (f"--vary {COLOR}=@no.gpl", 66, ""),
         ("--vary ambient=1,2 --set ambiet=1", 2, ""),
         ("--vary ambient=1,2 --sheet a.jpg", 2, ""),
+        ("--vary ambient=1,2 --columns 2", 2, "columns are for a contact sheet"),
+        ("--vary lights.key.on.on=1,2", 2, "--vary lights.key.on.on: light 'key': on must be true or false"),
+        (f"--vary {'x' * 300}=1,2", 2, f"--vary {'x' * 38}...{'x' * 38}: there is no field 'xxx"),
     ],
 )
 def test_a_wrong_command_line_is_refused_before_anything_is_made(

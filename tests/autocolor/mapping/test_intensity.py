@@ -90,7 +90,7 @@ def test_where_nothing_has_an_extent_every_pixel_has_the_middle_level(scaling: s
 @pytest.mark.parametrize("exposure", ["auto", "99.5 %"])
 @pytest.mark.parametrize("paint", [{"blend": 0.0}, {"blend": 0.7}, {"ramp": ["#300", "#fff"]}], ids=str)
 def test_with_the_last_light_off_no_pixel_is_brighter_and_each_has_its_lowest_level(
-    contrast: str, exposure: str, paint: dict[str, Any]
+    contrast: Any, exposure: str, paint: dict[str, Any]
 ) -> None:
     scene = wall_scene().replace(contrast=contrast, exposure=exposure, ambient=0.05)
     scene = scene.with_paint("wall", **paint)

@@ -231,6 +231,26 @@ def test_saved_values_are_a_table_of_variants(
     assert (png == image(found, small)).all()
 
 
+def test_saved_values_with_other_light_give_the_picture_of_the_page(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, tmp_path: Path
+) -> None:
+    for link, differs in (("lights.key.intensity=0.3", True), ("surfaces.body.blend=0.25", False)):
+        page = opened(coupe, small, link, lights=True)
+        (tmp_path / "values.csv").write_bytes(saved(page, "Save CSV"))
+        (variant,) = autocolor.read_variants(tmp_path / "values.csv")
+        assert ("exposure" in variant.settings) == differs
+        png = np.asarray(Image.open(io.BytesIO(saved(page, "Save PNG"))).convert("RGB"))
+        for settings, is_same in (
+            (variant.settings, True),
+            ({key: value for key, value in variant.settings.items() if key != "exposure"}, not differs),
+        ):
+            found = scene_with(coupe, settings)
+            size = small.lines // small.smooth, small.elements // small.smooth
+            colors = image(found, autocolor.render(found, *size, smooth=small.smooth))
+            # The planes of the lights are rounded: a few words are off by one.
+            assert ((np.abs(png.astype(int) - colors) <= 2).mean() > 0.999) == is_same
+
+
 def test_a_drag_is_one_step_and_the_link_has_the_colors(
     opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
 ) -> None:

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from autocolor import (
     InputError,
     Light,
-    Picture,
     Scene,
+    Surface,
     UsageError,
     image,
     read_picture,
@@ -26,9 +26,10 @@ from autocolor import (
 )
 from autocolor.arrays import AnyArray
 from autocolor.budget import MEMORY, allowing
+from autocolor.files.settings import scene_with
 from autocolor.images import averaged, display_image, smoothed
 from autocolor.lighting.picture import IntensityRange
-from autocolor.mapping.intensity import has_extent, levels_of, mapped_ranges, stage_surfaces
+from autocolor.mapping.intensity import levels_of
 from autocolor.rendering import rendering
 from autocolor.scene.curves import mapping_curve
 from autocolor.testing import MAPPINGS, numbers, scenes
@@ -154,17 +155,6 @@ def test_the_legend_of_an_export_is_that_of_the_image(smooth: int) -> None:
 # Lights.
 
 
-def held_exposure_of(scene: Scene, picture: Picture) -> Any:
-    """The ranges of intensities that a page holds, by surface."""
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene))
-    scale = picture.scale
-    return {
-        picture.surfaces[number - 1]: (scale * extent.minimum, scale * extent.maximum)
-        for number, extent in extents.items()
-        if number
-    } or "auto"
-
-
 def relit(scene: Scene, exposure: Any, strengths: Mapping[str, float]) -> Scene:
     """The scene with other strengths of all lights, and an exposure."""
     lights = tuple(light.replace(on=True, intensity=strengths[light.name]) for light in scene.lights)
@@ -186,16 +176,21 @@ def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     as_exported = {light.name: light.intensity * light.on for light in scene.lights}
     assert (relit_words(values, as_exported, -1) <= shown.words).all()
     assert (shown.words <= relit_words(values, as_exported, 1)).all()
-    if scene.mapping == "equalize":
-        # A page keeps the histogram that was exported.
-        return
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene))
-    assume(all(has_extent(extent) for number, extent in extents.items() if number))
     others = {light.name: strength for light, strength in zip(scene.lights, strengths, strict=False)}
-    other = relit(scene, held_exposure_of(scene, picture), others)
+    # A table that is saved from the page has this exposure.
+    held = scene_with(scene, {"exposure": values["lights"]["exposure"]})
+    other = relit(held, held.exposure, others)
     expected = display_image(other, render(other, *SIZE)).words
     assert (relit_words(values, others, -1) <= expected).all()
     assert (expected <= relit_words(values, others, 1)).all()
+
+
+def test_a_surface_with_the_name_of_the_range_of_the_object_has_that_range() -> None:
+    scene = wall_scene()
+    parts = tuple(part.replace(surface="object") for part in scene.parts)
+    scene = scene.replace(surfaces=(Surface("object"),), parts=parts)
+    exposure = values_through_json(scene, lights=True)["lights"]["exposure"]
+    assert list(dict(scene_with(scene, {"exposure": exposure}).exposure)) == ["object"]  # type: ignore[arg-type]
 
 
 def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> None:
@@ -266,6 +261,10 @@ def lit(edited: Scene, rendered: Scene | None = None) -> object:
             lambda: lit(car().replace(words="normals")),
             "a page with lights must have words",
         ),
+        (
+            lambda: lit(car().replace(mapping="equalize")),
+            "a page with lights must have a mapping that stays with the exposure, not equalize",
+        ),
         (lambda: check_canvas(4096, 4097), "a picture in a browser must have at most 16,777,216 pixels"),
     ],
 )
@@ -302,6 +301,8 @@ def test_a_variant_has_the_fields_of_paints_and_lights_that_it_changes() -> None
         {"name": "night", "surfaces.body.object_color": "navy", "lights.key.on": "false"},
         {"surfaces.glass.object_color": [1, 2, 3], "lights.fill.intensity": 0.4},
         {"surfaces.glass.ramp": "none", "surfaces.body.blend": "0.25", "lights.fill.intensity": "2"},
+        # A table that was saved from a page may come back.
+        {"name": "saved", "lights.key.on": "false", "exposure": '{ "object" = [0.0, 1.0] }'},
     ]
     assert values_through_json(scene, variants=rows, lights=True)["variants"] == [
         {"name": "night", "paints": {"body": {"object_color": "#000080"}}, "lights": {"key": {"on": False}}},
@@ -315,6 +316,7 @@ def test_a_variant_has_the_fields_of_paints_and_lights_that_it_changes() -> None
             "paints": {"body": {"blend": 0.25}, "glass": {"ramp": None}},
             "lights": {"fill": {"intensity": 2.0}},
         },
+        {"name": "saved", "paints": {}, "lights": {"key": {"on": False}}},
     ]
 
 
