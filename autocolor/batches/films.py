@@ -250,7 +250,6 @@ def _costs(first: Scene, other: Scene, variants: tuple[Variant, ...]) -> Iterato
     for key in {key for variant in variants for key in variant.settings}:
         place = place_of(first, key)
         field, one, two = field_of(place), value_at(first, place), value_at(other, place)
-        column = None if field is None else field.column
-        costs = Tier.FRAME if column is None else column.kind.cost(one, two, column.tier)
+        costs = Tier.FRAME if field is None else field.kind.cost(one, two, field.tier)
         if costs is not None and not (one is two is None):
             yield costs, key

@@ -94,7 +94,7 @@ def _own_text(scene: Scene, key: str) -> str:
         ) from None
     field = field_of(place)
     value = value_at(scene, place)
-    plain = {} if field is None or value is None else field.column.kind.to_plain(place.path[-1], value)
+    plain = {} if field is None or value is None else field.kind.to_plain(place.path[-1], value)
     return _safe(stem_of(plain.get(place.path[-1])))
 
 
@@ -219,7 +219,7 @@ def base_mark(scene: Scene, picture: Picture | None, drawn: tuple[object, ...]) 
     """
     plain = plain_scene(scene)
     for name, field in fields_of(Scene).items():
-        if field.column.tier is Tier.NOTHING:
+        if field.tier is Tier.NOTHING:
             plain.pop(name, None)
     mesh = scene.mesh
     arrays: list[Any] = [mesh.coordinates, mesh.node_numbers, mesh.part_numbers]

@@ -29,7 +29,7 @@ from autocolor.files.formats import (
 from autocolor.files.meshes.obj_writing import beyond_materials
 from autocolor.files.opening import FORMATS, SCENE
 from autocolor.files.paths import SCENE_FILE
-from autocolor.scene.columns import fields_of
+from autocolor.scene.columns import MISSING, fields_of
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.scalar import NODE
 from autocolor.scene.scene import Scene
@@ -129,6 +129,5 @@ def _settings(scene: Scene) -> list[str]:
         name
         for name, field in fields_of(Scene).items()
         if name not in ("name", "view", "views", "lights", "parts", "surfaces")
-        and field.default is not None
-        and vars(scene)[name] != field.default()
+        and field.default not in (MISSING, vars(scene)[name])
     ]

@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.files.text_table import value_of_text
-from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of
+from autocolor.scene.columns import MISSING, REFUSED, Column, Kind, Row, fields_of, keys_of
 from autocolor.scene.kinds import Instance, Text
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring, RowList
 from autocolor.scene.scene import Scene
@@ -66,11 +66,11 @@ def _replaced(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
     return edits[table](**fields)
 
 
-def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> object:
+def _value_for(scene: Scene, field: Column | None, key: str, value: object) -> object:
     """The value for a field. Raises UsageError if it unsets a field that must have a value."""
     if field is None:
         return value_of_text(value) if isinstance(value, str) else value
-    kind = field.column.kind
+    kind = field.kind
     if isinstance(value, str):
         names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
         refers = isinstance(kind, Referring) and (not field.is_optional or value in names)
@@ -85,11 +85,10 @@ def _value_for(scene: Scene, field: Field | None, key: str, value: object) -> ob
         return value
     if field.is_optional:
         return None
-    default = None if field.default is None else field.default()
     # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
-    if default is None or kind.to_plain(key, default).get(key) not in (None, {}):
+    if field.default is MISSING or kind.to_plain(key, field.default).get(key) not in (None, {}):
         raise UsageError(f"{key}: it {kind.rule()}, not none; only an optional field can be unset")
-    return default
+    return field.default
 
 
 def _names_of(text: str, existing: Sequence[str]) -> list[str]:
@@ -162,10 +161,10 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
     path = tuple(field.split("."))
     named = None if row is None else fields_of(type(row)).get(path[0])
     is_name = isinstance(kind, RowList) and field == "name"
-    if row is not None and named is not None and isinstance(named.column.kind, NamedRows) and len(path) > 1:
+    if row is not None and named is not None and isinstance(named.kind, NamedRows) and len(path) > 1:
         inner = field.partition(".")[2]
         names = [inner_row.name for inner_row in vars(row)[path[0]]]
-        inner_name, rest = _name_and_rest(inner, names, key, named.column.kind.row_class)
+        inner_name, rest = _name_and_rest(inner, names, key, named.kind.row_class)
         path = (path[0], inner_name, *(rest.split(".") if rest else ()))
         is_name = "name" in (inner, rest)
     if is_name:
@@ -194,7 +193,7 @@ def _name_and_rest(text: str, names: Iterable[str], key: str, cls: type[Row]) ->
     return wrong, ""
 
 
-def field_of(place: SettingPlace) -> Field | None:
+def field_of(place: SettingPlace) -> Column | None:
     """The field at a place; None if its row has no such field."""
     return field_and_value(_class_of(place), None, place.path)[0]
 
@@ -205,19 +204,19 @@ def _class_of(place: SettingPlace) -> type[Row]:
     return kind.row_class if isinstance(kind, (Nested, RowList)) else Scene
 
 
-def settable_kinds() -> Mapping[str, Kind]:
+def settable_kinds() -> Mapping[str, Kind[Any]]:
     """The kinds of the fields of a scene that have keys, by name."""
-    kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}
+    kinds = {name: field.kind for name, field in fields_of(Scene).items() if name != "name"}
     return {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
 
 
-def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Field | None, Any]:
+def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Column | None, Any]:
     """The field at a path of keys in a row of a class, and its value; None for what is absent."""
     key = keys_of(cls).get(path[0])
     if key is None:
         return None, None
     field = fields_of(cls)[key.field]
-    kind = field.column.kind
+    kind = field.kind
     value = None if row is None else vars(row)[key.field]
     if isinstance(kind, OneRowOf) and path[0] != key.field:
         owners = [inner for inner in kind.classes.values() if path[0] in keys_of(inner)]
@@ -232,7 +231,7 @@ def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Fiel
         if len(path) > 2:
             return field_and_value(kind.row_class, inner, path[2:])
         # The row itself is optional.
-        return Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None), inner
+        return Column(Nested(kind.row_class), field.tier, field.help, default=None), inner
     return field_and_value(kind.row_class, value, path[1:]) if isinstance(kind, Nested) else (None, None)
 
 

@@ -1,24 +1,38 @@
 """The kinds of columns whose values have no fields: numbers, strings, vectors, curves, colors and others.
 
-The methods are described in `columns.Kind`.
+The methods are described in `columns.Kind`. A function such as `number` makes the field of a row class; the
+keywords of any field are those of `columns.About`.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from itertools import islice, pairwise
 from numbers import Integral, Real
-from typing import Any, Final
+from typing import Any, Final, Unpack
 
 import numpy as np
 
-from autocolor.arrays import half_up, unit_vector
+from autocolor.arrays import Floats, unit_vector
 from autocolor.checks import Color, Vector, closest, either, shown
-from autocolor.scene.columns import REFUSED, BarRange, Kind, Path, Problem, Tier, bar_within
+from autocolor.scene.columns import (
+    MISSING,
+    REFUSED,
+    WORLD_UNITS,
+    About,
+    BarRange,
+    Default,
+    Kind,
+    Path,
+    Problem,
+    Tier,
+    bar_within,
+    column_of,
+    refused,
+)
 
 LARGEST_PLACE: Final = 1e36
 """Limit: a coordinate. It leaves room for the eye and the lights around the largest object."""
@@ -37,7 +51,7 @@ def require(condition: bool) -> None:
 
 
 @dataclass(frozen=True)
-class Number(Kind):
+class Number(Kind[float]):
     """A finite number within bounds, converted to float.
 
     With `above`, the lower bound is excluded. The infinite value `endless` is accepted, too: it means "no
@@ -48,9 +62,6 @@ class Number(Kind):
     at_most: float = math.inf
     above: bool = False
     endless: float | None = None
-
-    def accepts(self) -> str:
-        return "float"
 
     def rule(self) -> str:
         if self.above:
@@ -80,15 +91,24 @@ class Number(Kind):
         return {} if repr(one) == repr(other) else {name: other}
 
 
+def number(
+    *,
+    at_least: float = -math.inf,
+    at_most: float = math.inf,
+    above: bool = False,
+    endless: float | None = None,
+    **about: Unpack[About[Default]],
+) -> float | Default:
+    """A field of numbers within bounds; see `Number`."""
+    return column_of(Number(at_least, at_most, above, endless), **about)
+
+
 @dataclass(frozen=True)
-class Whole(Kind):
+class Whole(Kind[int]):
     """A whole number within bounds."""
 
     at_least: int
     at_most: int
-
-    def accepts(self) -> str:
-        return "int"
 
     def bar(self) -> BarRange:
         return BarRange(self.at_least, self.at_most, 1)
@@ -102,32 +122,31 @@ class Whole(Kind):
         require(self.at_least <= number <= self.at_most)
         return number
 
-    def between(self, one: int, other: int, share: float) -> int:
-        return _whole_between(one, other, share)
 
-
-def _whole_between(one: int, other: int, share: float) -> int:
-    """The whole number at a share of the way from one to another, rounded half up."""
-    return half_up(one + (other - one) * share)
+def whole(*, at_least: int, at_most: int, **about: Unpack[About[Default]]) -> int | Default:
+    """A field of whole numbers within bounds."""
+    return column_of(Whole(at_least, at_most), **about)
 
 
 @dataclass(frozen=True)
-class Boolean(Kind):
+class Boolean(Kind[bool]):
     """A boolean."""
 
     def rule(self) -> str:
         return "must be true or false"
-
-    def accepts(self) -> str:
-        return "bool"
 
     def accepted(self, value: Any) -> bool:
         require(isinstance(value, (bool, np.bool_)))
         return bool(value)
 
 
+def boolean(**about: Unpack[About[Default]]) -> bool | Default:
+    """A field of booleans."""
+    return column_of(Boolean(), **about)
+
+
 @dataclass(frozen=True)
-class Text(Kind):
+class Text(Kind[str]):
     """A string, not empty unless `may_be_empty`."""
 
     may_be_empty: bool = False
@@ -135,26 +154,24 @@ class Text(Kind):
     def rule(self) -> str:
         return "must be a string" + ("" if self.may_be_empty else " of at least one character")
 
-    def accepts(self) -> str:
-        return "str"
-
     def accepted(self, value: Any) -> str:
         require(isinstance(value, str) and (value != "" or self.may_be_empty))
-        text: str = value
-        return text
+        return str(value)
+
+
+def text(*, may_be_empty: bool = False, **about: Unpack[About[Default]]) -> str | Default:
+    """A field of strings, not empty unless `may_be_empty`."""
+    return column_of(Text(may_be_empty), **about)
 
 
 @dataclass(frozen=True)
-class VectorKind(Kind):
+class VectorKind(Kind[Vector]):
     """A point or a direction: three finite numbers; with `has_length`, not all zero."""
 
     has_length: bool = False
 
     def rule(self) -> str:
         return "must be three finite numbers of at most 1e36"
-
-    def accepts(self) -> str:
-        return "Sequence[float]"
 
     def accepted(self, value: Any) -> tuple[float, float, float]:
         require(not isinstance(value, UNORDERED))
@@ -167,11 +184,10 @@ class VectorKind(Kind):
     def advice(self, value: object) -> str:
         return "; write them as in [1, 2, 3]" if isinstance(value, str) else ""
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         vector = super().validated(value, path, problems)
         if self.has_length and vector == (0.0, 0.0, 0.0):
-            problems.append(Problem(path, f"must have a length above 0, not {shown(value)}; change it"))
-            return REFUSED
+            return refused(problems, path, f"must have a length above 0, not {shown(value)}; change it")
         return vector
 
     def between(self, one: Vector, other: Vector, share: float) -> Vector:
@@ -180,47 +196,45 @@ class VectorKind(Kind):
             point: Vector = super().between(one, other, share)
             return point
         length = super().between(math.hypot(*one), math.hypot(*other), share)
-        x, y, z = (length * component for component in _direction_between(one, other, share))
+        x, y, z = (length * _direction_between(one, other, share)).tolist()
         return x, y, z
+
+
+def coordinates(*, tier: Tier, help: str, default: Default = MISSING) -> Vector | Default:
+    """A field of points, in world units."""
+    return column_of(VectorKind(), unit=WORLD_UNITS, tier=tier, help=help, default=default)
+
+
+def vector(**about: Unpack[About[Default]]) -> Vector | Default:
+    """A field of directions, of any length."""
+    return column_of(VectorKind(has_length=True), **about)
 
 
 LEAST_SINE: Final = 1e-9
 """Assumed: directions with a smaller sine of their angle are in a line; rounding would decide how to turn."""
 
 
-def _direction_between(one: Vector, other: Vector, share: float) -> Vector:
+def _direction_between(one: Vector, other: Vector, share: float) -> Floats:
     """The unit vector at a share of the shortest turn from one direction to another.
 
     Assumed: opposite directions turn through the vertical; from the vertical, through +x.
     """
-    start, end = unit_vector(one), unit_vector(other)
-    cosine = _dot(start, end)
-    aside = _aside(start, end)
-    angle = math.atan2(math.hypot(*aside), cosine)
-    if math.hypot(*aside) < LEAST_SINE:
-        if cosine > 0:
+    start, end = np.array(unit_vector(one)), np.array(unit_vector(other))
+    cosine, sine = float((start * end).sum()), 0.0
+    for toward in (end, np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])):
+        # The component at right angles to the start.
+        aside = toward - float((start * toward).sum()) * start
+        sine = math.hypot(*aside)
+        if sine >= LEAST_SINE:
+            break
+        if toward is end and cosine > 0:
             return start
-        aside = _aside(start, (0.0, 0.0, 1.0))
-        if math.hypot(*aside) < LEAST_SINE:
-            aside = 1.0, 0.0, 0.0
-    along, across = math.cos(share * angle), math.sin(share * angle)
-    x, y, z = (along * a + across * b for a, b in zip(start, unit_vector(aside), strict=True))
-    return x, y, z
-
-
-def _dot(one: Vector, other: Vector) -> float:
-    return sum(a * b for a, b in zip(one, other, strict=True))
-
-
-def _aside(start: Vector, toward: Vector) -> Vector:
-    """The component of a unit vector at right angles to another."""
-    cosine = _dot(start, toward)
-    x, y, z = (b - cosine * a for a, b in zip(start, toward, strict=True))
-    return x, y, z
+    angle = math.atan2(sine if toward is end else 0.0, cosine)
+    return math.cos(share * angle) * start + math.sin(share * angle) / sine * aside
 
 
 @dataclass(frozen=True)
-class OneOf(Kind):
+class OneOf(Kind[str]):
     """One of several names."""
 
     names: tuple[str, ...]
@@ -228,42 +242,50 @@ class OneOf(Kind):
     def rule(self) -> str:
         return f"must be {either(self.names)}"
 
-    def accepts(self) -> str:
-        return f"Literal[{', '.join(map(json.dumps, self.names))}]"
-
     def accepted(self, value: Any) -> str:
         require(isinstance(value, str) and value in self.names)
-        name: str = value
-        return name
+        return str(value)
 
     def advice(self, value: object) -> str:
         return closest(value, self.names) if isinstance(value, str) else ""
 
 
+def one_of(names: tuple[str, ...], **about: Unpack[About[Default]]) -> str | Default:
+    """A field of several names."""
+    return column_of(OneOf(names), **about)
+
+
+AngleCurve = tuple[tuple[float, float], ...]
+"""Points (x, y) of a piecewise linear curve, with rising x."""
+
+
+def _points(value: Any, end: float, most: float = math.inf) -> tuple[tuple[float, float], ...]:
+    """The 2 to `most` points of a curve from x = 0 to x = end, y from 0 to 1. Raises ValueError."""
+    require(not isinstance(value, UNORDERED))
+    pairs = list(value)
+    require(2 <= len(pairs) <= most and not any(isinstance(pair, UNORDERED) for pair in pairs))
+    along, share = Number(0, end).accepted, Number(0, 1).accepted
+    points = tuple((along(x), share(y)) for x, y in pairs)
+    require(points[0][0] == 0 and points[-1][0] == end)
+    require(all(one[0] < other[0] for one, other in pairwise(points)))
+    return points
+
+
 @dataclass(frozen=True, eq=False)
-class CurveKind(Kind):
+class CurveKind(Kind[str | AngleCurve]):
     """The name of a curve, or points (x, y) of a nondecreasing curve from x = 0 to x = 1."""
 
     names: Mapping[str, object]
 
-    def accepts(self) -> str:
-        return "str | Sequence[Sequence[float]]"
-
     def rule(self) -> str:
         return f"must be {', '.join(map(repr, self.names))}, or rising points [x, y] from x = 0 to x = 1"
 
-    def accepted(self, value: Any) -> str | tuple[tuple[float, float], ...]:
+    def accepted(self, value: Any) -> str | AngleCurve:
         if isinstance(value, str):
             require(value in self.names)
             return value
-        require(not isinstance(value, UNORDERED))
-        pairs = list(value)
-        require(not any(isinstance(pair, UNORDERED) for pair in pairs))
-        along = Number(at_least=0, at_most=1).accepted
-        points = tuple((along(x), along(y)) for x, y in pairs)
-        xs, ys = [x for x, _ in points], [y for _, y in points]
-        require(len(points) >= 2 and xs[0] == 0 and xs[-1] == 1 and all(a < b for a, b in pairwise(xs)))
-        require(all(a <= b for a, b in pairwise(ys)))
+        points = _points(value, 1)
+        require(all(one[1] <= other[1] for one, other in pairwise(points)))
         return points
 
     def advice(self, value: object) -> str:
@@ -271,42 +293,28 @@ class CurveKind(Kind):
 
 
 @dataclass(frozen=True, eq=False)
-class Instance(Kind):
-    """An instance of a class, such as the mesh. It is compared by identity, and scene files leave it out."""
+class Instance(Kind[Any]):
+    """An instance of a class, such as the mesh. Scene files leave it out."""
 
     value_class: type
 
     def rule(self) -> str:
         return f"must be a {self.value_class.__name__}"
 
-    def accepts(self) -> str:
-        return "object"
-
-    def accepted(self, value: Any) -> object:
+    def accepted(self, value: Any) -> Any:
         require(isinstance(value, self.value_class))
         return value
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {}
 
-    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
-        return {}
-
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        return own
-
-
-RIGHT_ANGLE: Final = 90.0
 
 MOST_POINTS: Final = 91
-"""Limit: points of a curve, one for each degree."""
-
-AngleCurve = tuple[tuple[float, float], ...]
-"""Points (angle in degrees, value), with rising angles from 0 to 90, of a piecewise linear curve."""
+"""Limit: points of a curve over angles, one for each degree."""
 
 
 @dataclass(frozen=True)
-class AngleCurveKind(Kind):
+class AngleCurveKind(Kind[AngleCurve]):
     """Points (angle, share) of a curve from 0 to 90 degrees, with shares from 0 to 1.
 
     `least` is the least share at 0 degrees. `start` is the first value when an absent curve is switched on.
@@ -314,9 +322,6 @@ class AngleCurveKind(Kind):
 
     least: float
     start: AngleCurve
-
-    def accepts(self) -> str:
-        return "Sequence[Sequence[float]]"
 
     def rule(self) -> str:
         return (
@@ -328,20 +333,9 @@ class AngleCurveKind(Kind):
         return f"; write them as in {[list(point) for point in self.start]}"
 
     def accepted(self, value: Any) -> AngleCurve:
-        require(not isinstance(value, UNORDERED))
-        pairs = list(value)
-        require(2 <= len(pairs) <= MOST_POINTS)
-        require(not any(isinstance(pair, UNORDERED) for pair in pairs))
-        angle, share = Number(0, RIGHT_ANGLE).accepted, self.share_kind(1).accepted
-        points = tuple((angle(x), share(y)) for x, y in pairs)
-        require(points[0][0] == 0 and points[-1][0] == RIGHT_ANGLE)
-        require(all(one[0] < other[0] for one, other in pairwise(points)))
-        self.share_kind(0).accepted(points[0][1])
+        points = _points(value, 90, MOST_POINTS)
+        require(points[0][1] >= self.least)
         return points
-
-    def share_kind(self, number: int) -> Number:
-        """The kind of a point's share; the number of the point counts from 0."""
-        return Number(0 if number else self.least, 1)
 
 
 LONGEST_COLOR: Final = 100
@@ -351,7 +345,7 @@ SIX_DIGITS: Final = re.compile("#[0-9a-fA-F]{6}")
 
 
 @dataclass(frozen=True)
-class ColorKind(Kind):
+class ColorKind(Kind[Color]):
     """A color: red, green and blue from 0 to 255, written as "#rrggbb".
 
     Three whole numbers are accepted, and every text that Pillow's `ImageColor` knows, unless it has
@@ -361,9 +355,6 @@ class ColorKind(Kind):
 
     def rule(self) -> str:
         return 'must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255'
-
-    def accepts(self) -> str:
-        return "str | Sequence[int]"
 
     def accepted(self, value: Any) -> Color:
         if isinstance(value, str):
@@ -380,22 +371,20 @@ class ColorKind(Kind):
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: in_digits(value)}
 
-    def between(self, one: Color, other: Color, share: float) -> Color:
-        red, green, blue = (_whole_between(a, b, share) for a, b in zip(one, other, strict=True))
-        return red, green, blue
+
+def color(**about: Unpack[About[Default]]) -> Color | Default:
+    """A field of colors."""
+    return column_of(ColorKind(), **about)
 
 
 @dataclass(frozen=True)
-class ColorsKind(Kind):
+class ColorsKind(Kind[tuple[Color, ...]]):
     """A list of 2 to `most` colors. A text of colors between commas, as in "#200, #f60", is accepted."""
 
     most: int
 
     def rule(self) -> str:
         return f"must be a list of 2 to {self.most} colors"
-
-    def accepts(self) -> str:
-        return "str | Sequence[str | Sequence[int]]"
 
     def accepted(self, value: Any) -> tuple[Color, ...]:
         require(not isinstance(value, UNORDERED))
@@ -406,7 +395,7 @@ class ColorsKind(Kind):
     def advice(self, value: object) -> str:
         return '; write them as in ["#200", "#f60", "#fff"]'
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         given = value
         if isinstance(value, str) and len(value) <= LONGEST_COLOR * self.most:
             given = _between_commas(value.removeprefix("[").removesuffix("]"))
@@ -418,12 +407,6 @@ class ColorsKind(Kind):
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: [in_digits(color) for color in value]}
-
-    def between(self, one: Any, other: Any, share: float) -> Any:
-        """Lists of equally many colors are interpolated, color by color; other lists hold."""
-        if len(one) != len(other):
-            return one
-        return tuple(ColorKind().between(a, b, share) for a, b in zip(one, other, strict=True))
 
 
 def _between_commas(text: str) -> list[str]:

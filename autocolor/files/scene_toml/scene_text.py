@@ -15,7 +15,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.repair import COMPUTED
 from autocolor.files.scene_toml.toml_edit import edited_toml, item_numbers
 from autocolor.files.scene_toml.toml_text import parsed_toml, table_text, toml_key
-from autocolor.scene.columns import Row, fields_of, from_plain, to_plain, with_values
+from autocolor.scene.columns import MISSING, Row, fields_of, from_plain, to_plain, with_values
 from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.lights import Light
 from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, RowList, without_name
@@ -70,16 +70,14 @@ def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
     keys_of_row = sparse_row if sparse else _plain_row
     tables: dict[str, Any] = {}
     for name, field in fields_of(Scene).items():
-        value, kind = vars(scene)[name], field.column.kind
+        value, kind = vars(scene)[name], field.kind
         if name in BY_NAME:
             tables[name] = {row.name: without_name(keys_of_row(row)) for row in value}
         elif isinstance(kind, RowList):
             tables[name] = [keys_of_row(row) for row in value]
         elif isinstance(kind, Nested) and value is not None:
             tables[name] = keys_of_row(value)
-        elif name != "name" and not (
-            field.default and value == field.default() and (sparse or value is None)
-        ):
+        elif name != "name" and not (value == field.default and (sparse or value is None)):
             tables.update(kind.to_plain(name, value))
     return tables
 
@@ -97,7 +95,7 @@ def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
 def sparse_row(row: Row) -> dict[str, object]:
     """The row as keys and plain values, without keys whose values are their defaults."""
     keys = to_plain(row)
-    required = [name for name, field in fields_of(type(row)).items() if field.default is None]
+    required = [name for name, field in fields_of(type(row)).items() if field.default is MISSING]
     always = (*required, *ALWAYS_WRITTEN)
     given = {key: keys[key] for key in always if key in keys}
     model = {key: keys[key] for key in ("model",) if key in keys}
@@ -106,7 +104,7 @@ def sparse_row(row: Row) -> dict[str, object]:
     if isinstance(row, Light):
         keys["flaps"] = {axis: sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None}
     for name, field in fields_of(type(row)).items():
-        if isinstance(field.column.kind, NamedRows) and name in keys:
+        if isinstance(field.kind, NamedRows) and name in keys:
             keys[name] = {inner.name: without_name(sparse_row(inner)) for inner in vars(row)[name]}
     return {
         key: value
@@ -122,7 +120,7 @@ MOST_ROUNDS: Final = 6
 
 ORDERED: Final = (
     "surfaces",
-    *(name for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)),
+    *(name for name, field in fields_of(Scene).items() if isinstance(field.kind, RangesByName)),
 )
 """The tables whose keys have an order."""
 

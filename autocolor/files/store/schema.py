@@ -23,7 +23,7 @@ from typing import Any, Final
 
 from autocolor.checks import listed, nearest
 from autocolor.errors import InputError
-from autocolor.scene.columns import Field, Kind, Row, fields_of, to_plain
+from autocolor.scene.columns import MISSING, Column, Kind, Row, fields_of, to_plain
 from autocolor.scene.kinds import Boolean, ColorKind, Instance, Number, OneOf, Text, VectorKind, Whole
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, RowList
 from autocolor.scene.scalar import NODE, POLYGON
@@ -33,7 +33,7 @@ NUMBER: Final = "number"
 """The column that counts the rows of a table from 1, in their order; the tables of the mesh apart."""
 
 AXES: Final = ("x", "y", "z")
-TYPES: Final[Mapping[str, tuple[type[Kind], ...]]] = {
+TYPES: Final[Mapping[str, tuple[type[Kind[Any]], ...]]] = {
     "REAL": (Number, VectorKind),
     "INTEGER": (Whole, Boolean),
     "TEXT": (Text, OneOf, ColorKind, Reference, OneRowOf),
@@ -56,7 +56,7 @@ class SqlColumn:
 
     name: str
     path: tuple[str, ...]
-    kind: Kind
+    kind: Kind[Any]
     help: str
     component: int | None = None
     may_be_null: bool = False
@@ -111,14 +111,13 @@ def columns_of(row_class: type[Row]) -> tuple[SqlColumn, ...]:
     return tuple(column for name, field in fields for column in _columns(name, field, (), is_given=True))
 
 
-def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -> Iterator[SqlColumn]:
+def _columns(name: str, column: Column, prefix: tuple[str, ...], is_given: bool) -> Iterator[SqlColumn]:
     """The columns of a field.
 
     All of them may be NULL if the row around the field may be absent, or if the field may be reset because
     the row uses an alternative. A row that may be absent must have a column that is never NULL.
     """
-    column, is_optional, default = field
-    kind = column.kind
+    kind, is_optional = column.kind, column.is_optional
     if isinstance(kind, (Instance, RowList)):
         return
     if isinstance(kind, Nested):
@@ -129,7 +128,8 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
             yield from _columns(inner_name, inner, inner_prefix, inner_is_given)
         return
     may_be_null = is_optional or not is_given or endless(kind) is not None or isinstance(kind, NamedRows)
-    start: Any = None if default is None or may_be_null else kind.to_plain(name, default()).get(name)
+    has_start = column.default is not MISSING and not may_be_null
+    start: Any = kind.to_plain(name, column.default).get(name) if has_start else None
     for key, inner_column in kind.keys(name, column).items():
         # The other keys belong to the classes of a variant; a class has only some of the keys.
         may_be_absent, value = (may_be_null, start) if key == name else (True, None)
@@ -146,7 +146,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
             )
 
 
-def endless(kind: Kind) -> float | None:
+def endless(kind: Kind[Any]) -> float | None:
     """The infinite value that a kind may have, which a table has as NULL."""
     return getattr(kind, "endless", None)
 
@@ -201,7 +201,7 @@ def _within(table: Any, path: Sequence[str], is_made: bool = False) -> Any:
     return table
 
 
-def _from_sql(kind: Kind, value: SqlValue) -> object:
+def _from_sql(kind: Kind[Any], value: SqlValue) -> object:
     """A value of a table as a plain value. An invalid value is returned as it is, and refused later."""
     if isinstance(kind, Boolean) and value in (0, 1):
         return bool(value)
@@ -262,9 +262,9 @@ def _definition(name: str, key: str, lines: Iterable[str]) -> str:
 ROW_TABLES: Final[Mapping[str, RowTable]] = {
     SCENE: RowTable(SCENE, Scene, is_single=True),
     **{
-        name: RowTable(name, field.column.kind.row_class, isinstance(field.column.kind, Nested))
+        name: RowTable(name, field.kind.row_class, isinstance(field.kind, Nested))
         for name, field in fields_of(Scene).items()
-        if isinstance(field.column.kind, (RowList, Nested))
+        if isinstance(field.kind, (RowList, Nested))
     },
 }
 """The tables of a scene without its mesh: `scene`, `parts`, `surfaces`, `lights`, `view`, `scalar`."""

@@ -3,8 +3,7 @@ from __future__ import annotations
 import dataclasses
 import pickle
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 import pytest
 from hypothesis import given
@@ -20,7 +19,6 @@ from autocolor.scene.columns import (
     Row,
     RowError,
     Tier,
-    bar_of,
     bar_within,
     cost,
     difference,
@@ -29,7 +27,8 @@ from autocolor.scene.columns import (
     keys_of,
     replaced,
 )
-from autocolor.scene.kinds import Number, Text, Whole
+from autocolor.scene.kinds import Number, Whole, number, text
+from autocolor.scene.row_kinds import table_row
 from autocolor.testing import scenes
 from tests.autocolor.strategies import of_mesh
 from tests.small import wall_scene
@@ -43,17 +42,17 @@ NUMBERS = [
 ]
 
 
-@dataclass(frozen=True)
+@table_row
 class Span(Row):
     """A row with a rule between its columns, and alternatives."""
 
     noun: ClassVar[str] = "span"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("end",), ("length",))
 
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "What it is called.")]
-    begin: Annotated[float, Column(Number(), Tier.LIGHT, "Where it begins.")] = 0.0
-    end: Annotated[float | None, Column(Number(), Tier.LIGHT, "Where it ends.")] = None
-    length: Annotated[float | None, Column(Number(at_least=0), Tier.MIX, "How long it is.")] = None
+    name: str = text(tier=Tier.NOTHING, help="What it is called.")
+    begin: float = number(default=0.0, tier=Tier.LIGHT, help="Where it begins.")
+    end: float | None = number(default=None, tier=Tier.LIGHT, help="Where it ends.")
+    length: float | None = number(default=None, at_least=0, tier=Tier.MIX, help="How long it is.")
 
     def rules(self) -> Iterator[Problem]:
         if self.end is not None and self.length is not None:
@@ -64,7 +63,7 @@ class Span(Row):
 
 @pytest.mark.parametrize("column", NUMBERS)
 def test_every_number_has_a_bar_within_its_limits_or_is_measured_by_the_object(column: Column) -> None:
-    bar = bar_of(column)
+    bar = column.bar
     assert (bar is None) == (column.unit == WORLD_UNITS)
     if bar is None:
         return
@@ -78,19 +77,17 @@ def test_every_number_has_a_bar_within_its_limits_or_is_measured_by_the_object(c
 
 @pytest.mark.parametrize("cls", [Flap, Light, Surface, View, Scene])
 def test_a_number_that_may_be_absent_tells_what_it_starts_with(cls: type[Row]) -> None:
-    for column, is_optional, default in fields_of(cls).values():
-        bar = bar_of(column)
+    for column in fields_of(cls).values():
+        bar = column.bar
         if bar is None:
             assert column.start is None
-        elif is_optional:
+        elif column.is_optional:
             assert column.start is not None
             assert bar.rounded(column.start) == column.start
         else:
             assert column.start is None
-            assert default is not None
-            value = default()
-            assert isinstance(value, float)
-            assert bar.low <= value <= bar.high
+            assert isinstance(column.default, float)
+            assert bar.low <= column.default <= bar.high
 
 
 bars = st.tuples(
@@ -206,7 +203,7 @@ def values_in(row: Row) -> Iterator[tuple[Column, object]]:
     """All values of a row and of the rows inside it, with their columns."""
     for name, field in fields_of(type(row)).items():
         value = vars(row)[name]
-        yield field.column, value
+        yield field, value
         for inner in value if isinstance(value, tuple) else (value,):
             if isinstance(inner, Row):
                 yield from values_in(inner)

@@ -3,9 +3,7 @@ from __future__ import annotations
 import math
 import sqlite3
 from contextlib import closing
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated
 
 import pytest
 from hypothesis import given
@@ -22,10 +20,10 @@ from autocolor.files.store.schema import (
     row_values,
 )
 from autocolor.files.store.store_file import read_store
-from autocolor.scene.columns import Column, Row, Tier, from_plain, keys_of
-from autocolor.scene.kinds import Boolean, ColorKind, Number, OneOf, Text, VectorKind, Whole
+from autocolor.scene.columns import Row, Tier, column_of, from_plain, keys_of
+from autocolor.scene.kinds import boolean, color, coordinates, number, one_of, text, vector, whole
 from autocolor.scene.reflection_models import MODELS
-from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References
+from autocolor.scene.row_kinds import OneRowOf, Reference, References, nested, table_row
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
@@ -45,27 +43,27 @@ def test_a_table_of_too_many_rows_is_refused_before_it_is_read(
 FREE = Tier.NOTHING
 
 
-@dataclass(frozen=True)
+@table_row
 class Inner(Row):
-    low: Annotated[float, Column(Number(endless=-math.inf), FREE, "")] = -math.inf
-    shut: Annotated[bool, Column(Boolean(), FREE, "")] = False
+    low: float = number(default=-math.inf, endless=-math.inf, tier=FREE, help="")
+    shut: bool = boolean(default=False, tier=FREE, help="")
 
 
-@dataclass(frozen=True)
+@table_row
 class MadeUp(Row):
     """A row class with a column of each kind, which nothing else knows of."""
 
-    name: Annotated[str, Column(Text(), FREE, "")]
-    order: Annotated[int, Column(Whole(1, 5), FREE, "")]
-    group: Annotated[str, Column(OneOf(("a", "it's")), FREE, "")] = "it's"
-    place: Annotated[tuple[float, float, float], Column(VectorKind(), FREE, "")] = (1.0, 2.0, 3.0)
-    way: Annotated[tuple[float, float, float] | None, Column(VectorKind(has_length=True), FREE, "")] = None
-    tint: Annotated[Color | None, Column(ColorKind(), FREE, "")] = None
-    model: Annotated[Row, Column(OneRowOf(MODELS), FREE, "")] = field(default_factory=BlinnPhong)
-    near: Annotated[object, Column(Reference("lights", "here"), FREE, "")] = "here"
-    all: Annotated[tuple[str, ...] | None, Column(References("lights"), FREE, "")] = None
-    inner: Annotated[Inner | None, Column(Nested(Inner), FREE, "")] = None
-    paint: Annotated[Paint, Column(Nested(Paint, inline=True), FREE, "")] = field(default_factory=Paint)
+    name: str = text(tier=FREE, help="")
+    order: int = whole(at_least=1, at_most=5, tier=FREE, help="")
+    group: str = one_of(("a", "it's"), default="it's", tier=FREE, help="")
+    place: tuple[float, float, float] = coordinates(default=(1.0, 2.0, 3.0), tier=FREE, help="")
+    way: tuple[float, float, float] | None = vector(default=None, tier=FREE, help="")
+    tint: Color | None = color(default=None, tier=FREE, help="")
+    model: Row = column_of(OneRowOf(MODELS), default=BlinnPhong(), tier=FREE, help="")
+    near: object = column_of(Reference("lights", "here"), default="here", tier=FREE, help="")
+    all: tuple[str, ...] | None = column_of(References("lights"), default=None, tier=FREE, help="")
+    inner: Inner | None = nested(Inner, default=None, tier=FREE, help="")
+    paint: Paint = nested(Paint, default=Paint(), inline=True, tier=FREE, help="")
 
 
 texts = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=9)
