@@ -86,31 +86,32 @@ def column_of(kind: Kind[Value], **about: Unpack[About[Default]]) -> Value | Def
 
 
 class Tier(IntEnum):
-    """What an edit of a column costs, in increasing order.
+    """What an edit of a column costs, in increasing order; see COMPUTED."""
 
-    `computed` names what the edit computes again; every lower tier follows. `sent` names what it sends to the
-    display.
-    """
-
-    NOTHING = 0, "nothing", "nothing"
-    ENTRIES = 1, "entries of the lookup table", "those entries, no word"
-    LEVELS = 2, "the levels", "all words, the entries that differ"
-    MIX = 3, "the weighted sum of the lights", "all words, the entries that differ"
-    LIGHT = 4, "one light, or all lights on one surface", "all words, the entries that differ"
-    FRAME = 5, "everything", "all words, the entries that differ"
-
-    computed: str
-    sent: str
-
-    def __new__(cls, value: int, computed: str, sent: str) -> Tier:
-        """A member: a number with two phrases."""
-        tier = int.__new__(cls, value)
-        tier._value_ = value
-        tier.computed, tier.sent = computed, sent
-        return tier
+    NOTHING = 0
+    ENTRIES = 1
+    LEVELS = 2
+    MIX = 3
+    LIGHT = 4
+    FRAME = 5
 
 
-NOTHING, ENTRIES, LEVELS, MIX, LIGHT, FRAME = Tier
+NOTHING: Final = Tier.NOTHING
+ENTRIES: Final = Tier.ENTRIES
+LEVELS: Final = Tier.LEVELS
+MIX: Final = Tier.MIX
+LIGHT: Final = Tier.LIGHT
+FRAME: Final = Tier.FRAME
+
+COMPUTED: Final = (
+    "nothing",
+    "entries of the lookup table",
+    "the levels",
+    "the weighted sum of the lights",
+    "one light, or all lights on one surface",
+    "everything",
+)
+"""What an edit of each tier computes again; every lower tier follows."""
 
 Path = tuple[str | int, ...]
 """The keys and row numbers that lead from a row to a value inside it."""
@@ -155,8 +156,12 @@ class Kind(Generic[Value]):
         return {name: value}
 
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
-        """The keys and values that turn a field of this name from one value to another, neither None."""
-        return {} if repr(one) == repr(other) else self.to_plain(name, other)
+        """The keys and values that turn a field of this name from one value to another, neither None.
+
+        An infinite value, which is not written, is given too: without the key it would not change.
+        """
+        plain = {} if repr(one) == repr(other) else self.to_plain(name, other)
+        return {key: other if value is None else value for key, value in plain.items()}
 
     def bar(self) -> BarRange | None:
         """The bar of the kind's own limits; None unless it has numbers with two limits."""
@@ -171,8 +176,7 @@ class Kind(Generic[Value]):
             return cost(one, other, own)
         if isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
             pairs = zip(one, other, strict=True)
-            costs = [self.cost(a, b, own) for a, b in pairs if a is not b]
-            return max((tier for tier in costs if tier is not None), default=None)
+            return _largest(self.cost(a, b, own) for a, b in pairs if a is not b)
         return None if one == other else own
 
     def between(self, one: Any, other: Any, share: float) -> Any:
@@ -248,7 +252,7 @@ class Row(Immutable):
         shown_fields = [
             f"{name}={values[name]!r}"
             for name, column in fields_of(type(self)).items()
-            if column.default is MISSING or column.default != values[name]
+            if column.default != values[name]
         ]
         return f"{type(self).__name__}({', '.join(shown_fields)})"
 
@@ -326,9 +330,6 @@ def with_values(row: SomeRow, values: Mapping[str, object]) -> SomeRow:
 MOST_KEYS: Final = 64
 """Limit: keys of a table."""
 
-PLAIN_TYPES: Final = frozenset((float, int, bool, str, tuple, list))
-"""Types of most values, and not of tables. Measured: testing for `Mapping` takes several times as long."""
-
 
 def _made(cls: type[SomeRow], present: dict[str, Any], changes: Mapping[str, Any]) -> SomeRow:
     """The row of a class with some of its present values, by field, replaced. Raises RowError.
@@ -352,7 +353,7 @@ def _made(cls: type[SomeRow], present: dict[str, Any], changes: Mapping[str, Any
             inside.setdefault(key.field, {})[name] = value
         elif name not in fields:
             problems.append(unknown_key(name, {**fields, **keys}))
-        elif type(value) not in PLAIN_TYPES and isinstance(value, Mapping):
+        elif isinstance(value, Mapping):
             inside.setdefault(name, {}).update(value)
         else:
             values[name] = value
@@ -407,17 +408,15 @@ def difference(one: Row, other: Row) -> dict[str, object]:
     ones, others, resets = vars(one), vars(other), reset_fields(other)
     changes: dict[str, object] = {}
     for name, column in fields_of(type(one)).items():
-        before, after, kind = ones[name], others[name], column.kind
-        if before is after:
+        before, after = ones[name], others[name]
+        if before is after or (name in resets and after is not None):
             continue
         if after is None:
             changes[name] = None
-        elif name in resets:
-            continue
         elif before is None:
-            changes.update(kind.to_plain(name, after))
+            changes |= column.kind.to_plain(name, after)
         else:
-            changes.update(kind.difference(name, before, after))
+            changes |= column.kind.difference(name, before, after)
     return changes
 
 
@@ -429,13 +428,15 @@ def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
     if type(one) is not type(other):
         return own
     ones, others = vars(one), vars(other)
-    most: Tier | None = None
-    for name, column in fields_of(type(one)).items():
-        if ones[name] is not others[name]:
-            costs = column.kind.cost(ones[name], others[name], column.tier)
-            if costs is not None and (most is None or costs > most):
-                most = costs
-    return most
+    return _largest(
+        column.kind.cost(ones[name], others[name], column.tier)
+        for name, column in fields_of(type(one)).items()
+        if ones[name] is not others[name]
+    )
+
+
+def _largest(costs: Iterable[Tier | None]) -> Tier | None:
+    return max((tier for tier in costs if tier is not None), default=None)
 
 
 BARE: Final = re.compile(r"[\w-]{1,100}")
@@ -520,13 +521,6 @@ def check(row: Row, fields: Mapping[str, Column], problems: list[Problem]) -> No
         raise RowError(problems, row_label(row))
 
 
-STEPS: Final = 100
-"""Assumed: the least number of steps of a bar, so that a step is a small change."""
-
-DIGITS: Final = 12
-"""Digits of a rounded value: enough for any step, and few enough to write 0.3 as 0.3."""
-
-
 class BarRange(NamedTuple):
     """The usual range of a number that is set by pointing: multiples of `step` between `low` and `high`.
 
@@ -537,27 +531,9 @@ class BarRange(NamedTuple):
     high: float
     step: float
 
-    def rounded(self, value: float) -> float:
-        """The nearest value on the bar, with halves rounded up; a value beyond an end becomes the end.
 
-        >>> BarRange(0, 2, 0.01).rounded(0.2987), BarRange(1, 90, 1).rounded(0)
-        (0.3, 1.0)
-        """
-        within = min(max(value, self.low), self.high)
-        on_step = float(f"{math.floor(within / self.step + 0.5) * self.step:.{DIGITS}g}")
-        return float(min(max(on_step, self.low), self.high))
-
-    def fraction(self, value: float) -> float:
-        """The place of a value along the bar, 0 to 1."""
-        return (min(max(value, self.low), self.high) - self.low) / (self.high - self.low)
-
-    def at(self, fraction: float) -> float:
-        """The value on the bar at a fraction of its length; fractions beyond 0 and 1 give the ends.
-
-        >>> BarRange(-180, 180, 1).at(0.5)
-        0.0
-        """
-        return self.rounded(self.low + fraction * (self.high - self.low))
+STEPS: Final = 100
+"""Assumed: the least number of steps of a bar, so that a step is a small change."""
 
 
 def bar_within(low: float, high: float) -> BarRange:
@@ -569,6 +545,5 @@ def bar_within(low: float, high: float) -> BarRange:
     most = (high - low) / STEPS
     power = 10.0 ** math.floor(math.log10(most))
     # A step may exceed its bound by no more than rounding: 0.01 is a hundredth of 1.
-    steps = [factor * power for factor in (1, 2, 5, 10)]
-    step = max((step for step in steps if step <= most * (1 + 1e-9)), default=power)
-    return BarRange(low, high, float(f"{step:.{DIGITS}g}"))
+    factors = [factor for factor in (1, 2, 5, 10) if factor * power <= most * (1 + 1e-9)]
+    return BarRange(low, high, float(f"{max(factors, default=1) * power:.12g}"))

@@ -17,7 +17,7 @@ from typing import Any, Final, Unpack
 import numpy as np
 
 from autocolor.arrays import Floats, unit_vector
-from autocolor.checks import Color, Vector, closest, either, shown
+from autocolor.checks import Color, Vector, closest, either
 from autocolor.scene.columns import (
     MISSING,
     REFUSED,
@@ -31,7 +31,6 @@ from autocolor.scene.columns import (
     Tier,
     bar_within,
     column_of,
-    refused,
 )
 
 LARGEST_PLACE: Final = 1e36
@@ -85,10 +84,6 @@ class Number(Kind[float]):
 
     def to_plain(self, name: str, value: float) -> Mapping[str, object]:
         return {name: None if value == self.endless else value}
-
-    def difference(self, name: str, one: float, other: float) -> Mapping[str, object]:
-        # Write an infinite value, too: a change without the key would not change the value.
-        return {} if repr(one) == repr(other) else {name: other}
 
 
 def number(
@@ -164,6 +159,9 @@ def text(*, may_be_empty: bool = False, **about: Unpack[About[Default]]) -> str 
     return column_of(Text(may_be_empty), **about)
 
 
+COORDINATE: Final = Number(-LARGEST_PLACE, LARGEST_PLACE)
+
+
 @dataclass(frozen=True)
 class VectorKind(Kind[Vector]):
     """A point or a direction: three finite numbers; with `has_length`, not all zero."""
@@ -173,22 +171,16 @@ class VectorKind(Kind[Vector]):
     def rule(self) -> str:
         return "must be three finite numbers of at most 1e36"
 
-    def accepted(self, value: Any) -> tuple[float, float, float]:
+    def accepted(self, value: Any) -> Vector:
         require(not isinstance(value, UNORDERED))
-        given = list(value)
-        require(len(given) == 3 and not any(isinstance(component, NO_NUMBERS) for component in given))
-        x, y, z = (float(component) for component in given)
-        require(all(abs(component) <= LARGEST_PLACE for component in (x, y, z)))
+        x, y, z = map(COORDINATE.accepted, value)
+        require(not self.has_length or (x, y, z) != (0, 0, 0))
         return x, y, z
 
     def advice(self, value: object) -> str:
-        return "; write them as in [1, 2, 3]" if isinstance(value, str) else ""
-
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
-        vector = super().validated(value, path, problems)
-        if self.has_length and vector == (0.0, 0.0, 0.0):
-            return refused(problems, path, f"must have a length above 0, not {shown(value)}; change it")
-        return vector
+        if isinstance(value, str):
+            return "; write them as in [1, 2, 3]"
+        return "; one of them must not be 0" if self.has_length else ""
 
     def between(self, one: Vector, other: Vector, share: float) -> Vector:
         """A point moves along a line. A direction turns along a great circle, and its length is linear."""
@@ -358,12 +350,15 @@ class ColorKind(Kind[Color]):
 
     def accepted(self, value: Any) -> Color:
         if isinstance(value, str):
-            return _color_of_text(value)
-        require(not isinstance(value, UNORDERED))
+            value = bytes.fromhex(value[1:]) if SIX_DIGITS.fullmatch(value) else _components(value)
+        else:
+            require(not isinstance(value, UNORDERED))
         given = list(value)
         # Refuse even whole floats: (1.0, 0, 0) is red in other programs, and nearly black here.
         require(all(isinstance(part, Integral) and not isinstance(part, NO_NUMBERS) for part in given))
-        return _within_range(tuple(int(part) for part in given))
+        require(len(given) == 3 and min(given) >= 0 and max(given) <= 255)
+        red, green, blue = map(int, given)
+        return red, green, blue
 
     def advice(self, value: object) -> str:
         return _advice_on_text(value) if isinstance(value, str) else _advice_on_floats(value)
@@ -410,22 +405,12 @@ class ColorsKind(Kind[tuple[Color, ...]]):
 
 
 def _between_commas(text: str) -> list[str]:
-    """The parts of a text between its commas, without spaces and quotes around them.
-
-    Commas in parentheses do not count.
+    """The parts of a text between its commas, except those in parentheses, without spaces and quotes.
 
     >>> _between_commas("red, 'rgb(1, 2, 3)'")
     ['red', 'rgb(1, 2, 3)']
     """
-    parts: list[list[str]] = []
-    depth = 0
-    for part in text.split(","):
-        if depth > 0:
-            parts[-1].append(part)
-        else:
-            parts.append([part])
-        depth += part.count("(") - part.count(")")
-    return [",".join(part).strip(" '\"") for part in parts]
+    return [part.strip(" '\"") for part in re.split(rf",(?![^()]{{0,{LONGEST_COLOR}}}\))", text)]
 
 
 def in_digits(color: Color) -> str:
@@ -444,14 +429,6 @@ def color_names() -> tuple[str, ...]:
     return tuple(ImageColor.colormap)
 
 
-def _color_of_text(text: str) -> Color:
-    """The color that a text describes. Raises ValueError if it describes none, or has transparency."""
-    if SIX_DIGITS.fullmatch(text):
-        red, green, blue = bytes.fromhex(text[1:])
-        return red, green, blue
-    return _within_range(_components(text))
-
-
 def _components(text: str) -> tuple[int, ...]:
     """The three or four components, of any size, of a text that Pillow knows. Raises ValueError."""
     # Pillow would also accept a line break at the end, and digits of other alphabets.
@@ -459,12 +436,6 @@ def _components(text: str) -> tuple[int, ...]:
     from PIL import ImageColor
 
     return ImageColor.getrgb(text)
-
-
-def _within_range(components: tuple[int, ...]) -> Color:
-    require(len(components) == 3 and min(components) >= 0 and max(components) <= 255)
-    red, green, blue = components
-    return red, green, blue
 
 
 def _advice_on_text(text: str) -> str:
@@ -489,13 +460,10 @@ def _advice_on_floats(value: object) -> str:
     """How to write the color if some of three numbers are floats; empty for any other value."""
     try:
         parts = list(value)  # type: ignore[call-overload]
-        if len(parts) != 3 or all(isinstance(part, (Integral, *NO_NUMBERS)) for part in parts):
-            return ""
-        require(all(isinstance(part, Real) for part in parts))
+        require(all(isinstance(part, Real) and not isinstance(part, NO_NUMBERS) for part in parts))
         # Numbers up to 1 are fractions, as most programs write colors with floats.
         scale = 255 if max(parts) <= 1 else 1
-        red, green, blue = (int(float(part) * scale + 0.5) for part in parts)
-        color = _within_range((red, green, blue))
+        color = ColorKind().accepted([int(float(part) * scale + 0.5) for part in parts])
     except (TypeError, ValueError, OverflowError):
         return ""
     # Python, scene files and --set all write a color as a list.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final, Unpack, dataclass_transform, get_type_hints
@@ -64,7 +64,8 @@ class Nested(Kind[SomeRow]):
     inline: bool = False
 
     def rule(self) -> str:
-        return f"must be a table of {listed(keys_of(self.row_class))}"
+        name, keys = self.row_class.__name__, listed(keys_of(self.row_class))
+        return f"must be a {name}" if self.inline else f"must be a table of {keys}"
 
     def keys(self, name: str, column: Column) -> Mapping[str, Column]:
         if not self.inline:
@@ -75,19 +76,12 @@ class Nested(Kind[SomeRow]):
         if isinstance(value, self.row_class):
             return value
         if isinstance(value, Mapping):
-            try:
-                return from_plain(self.row_class, value)
-            except RowError as error:
-                return _refused(error, self._path(path), problems)
-        rule = f"must be a {self.row_class.__name__}" if self.inline else self.rule()
-        return refused(problems, path, f"{rule}, not {shown(value)}")
+            return _inside(path[:-1] if self.inline else path, problems, from_plain, self.row_class, value)
+        return refused(problems, path, f"{self.rule()}, not {shown(value)}")
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         if isinstance(present, self.row_class):
-            try:
-                return replaced(present, table)
-            except RowError as error:
-                return _refused(error, self._path(path), problems)
+            return _inside(path[:-1] if self.inline else path, problems, replaced, present, table)
         # Make a new row in place of an absent or an invalid row; `validated` refuses any other value later.
         is_new = present is REFUSED or (present is None and not self.inline)
         return self.validated(table, path, problems) if is_new else present
@@ -98,9 +92,6 @@ class Nested(Kind[SomeRow]):
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
         changes = difference(one, other)
         return changes if self.inline or not changes else {name: changes}
-
-    def _path(self, path: Path) -> Path:
-        return path[:-1] if self.inline else path
 
 
 def nested(
@@ -127,12 +118,9 @@ class OneRowOf(Kind[SomeRow]):
         inner = {key: at.column for cls in self.classes.values() for key, at in keys_of(cls).items()}
         return {name: column, **inner}
 
-    def accepted(self, value: Any) -> SomeRow:
-        if type(value) in self.classes.values():
-            row: SomeRow = value
-            return row
-        require(isinstance(value, str) and value in self.classes)
-        return self.classes[value]()
+    def accepted(self, value: Any) -> Any:
+        require(type(value) in self.classes.values() or (isinstance(value, str) and value in self.classes))
+        return self.classes[value]() if isinstance(value, str) else value
 
     def advice(self, value: object) -> str:
         return closest(value, self.classes) if isinstance(value, str) else ""
@@ -149,10 +137,7 @@ class OneRowOf(Kind[SomeRow]):
             rule = f"must go with {name} = {' or '.join(owners)}, not with {self.name_of(value)!r}"
             refused(problems, (*path[:-1], key), f"{rule}; leave it out, or change the {name}")
             del keys[key]
-        try:
-            return replaced(value, keys) if keys else value
-        except RowError as error:
-            return _refused(error, path[:-1], problems)
+        return _inside(path[:-1], problems, replaced, value, keys) if keys else value
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: self.name_of(value), **to_plain(value)}
@@ -191,10 +176,13 @@ class RowList(Kind[tuple[SomeRow, ...]]):
         return {name: [to_plain(row) for row in value]}
 
 
-def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
-    """Append the problems of a row inside another, with the path to that row, and return REFUSED."""
-    problems.extend(problem.under(path) for problem in error.row_problems)
-    return REFUSED
+def _inside(path: Path, problems: list[Problem], make: Callable[..., Row], *arguments: object) -> Any:
+    """The row that a function makes; REFUSED, with its problems appended under a path, if it is invalid."""
+    try:
+        return make(*arguments)
+    except RowError as error:
+        problems.extend(problem.under(path) for problem in error.row_problems)
+        return REFUSED
 
 
 # References to rows of other tables, by name.
@@ -301,6 +289,8 @@ def references_of(cls: type[Row]) -> Mapping[str, RowKey]:
 MOST_NAMED_ROWS: Final = 64
 """Limit: rows inside another row. A screen hardly has room for more."""
 
+FEW: Final = f"must be at most {MOST_NAMED_ROWS}, not {{:,}}; leave some out"
+
 
 @dataclass(frozen=True)
 class NamedRows(Kind[tuple[SomeRow, ...]]):
@@ -321,7 +311,7 @@ class NamedRows(Kind[tuple[SomeRow, ...]]):
         if not isinstance(value, (list, tuple)) or not all(type(row) is self.row_class for row in value):
             return refused(problems, path, f"{self.rule()}, not {shown(value)}")
         if len(value) > MOST_NAMED_ROWS:
-            return self._too_many(len(value), path, problems)
+            return refused(problems, path, FEW.format(len(value)))
         rows: list[Any] = sorted(value, key=lambda row: row.name)
         repeated = dict.fromkeys(one.name for one, other in pairwise(rows) if one.name == other.name)
         for name in repeated:
@@ -332,40 +322,36 @@ class NamedRows(Kind[tuple[SomeRow, ...]]):
         rows = {row.name: row for row in present} if isinstance(present, tuple) else {}
         # A change may replace every row: remove MOST_NAMED_ROWS, and add as many.
         if len(table) > 2 * MOST_NAMED_ROWS:
-            return self._too_many(len(table), path, problems)
+            return refused(problems, path, FEW.format(len(table)))
         for name, given in table.items():
-            place = (*path, name)
-            if not isinstance(name, str) or not name:
-                text = f"{self.rule()}, not by {shown(name)}; name it by at least one character"
-                rows[name] = refused(problems, path, text)
-            elif given is None and name in rows:
-                del rows[name]
-            elif given is None:
-                advice = nearest(name, rows) or "; leave it out"
-                text = f"there is no {self.row_class.noun} of this name{advice}"
-                rows[name] = refused(problems, place, text)
-            elif name in rows and isinstance(given, Mapping):
-                rows[name] = Nested(self.row_class).replaced(rows[name], given, place, problems)
-            else:
-                rows[name] = self._new(name, given, place, problems)
+            rows[name] = self._changed(rows, name, given, path, problems)
         if any(row is REFUSED for row in rows.values()):
             return REFUSED
-        return self.validated(tuple(rows.values()), path, problems)
+        return self.validated([row for row in rows.values() if row is not None], path, problems)
 
-    def _new(self, name: str, given: object, path: Path, problems: list[Problem]) -> Any:
-        """The row for a table of keys, or a row itself; REFUSED if it is invalid or has another name."""
+    def _changed(
+        self, rows: Mapping[str, Any], name: object, given: object, path: Path, problems: list[Problem]
+    ) -> Any:
+        """The row of a name after a change: of keys of it, to another row, or to None."""
+        if not isinstance(name, str) or not name:
+            text = f"{self.rule()}, not by {shown(name)}; name it by at least one character"
+            return refused(problems, path, text)
+        path, nested = (*path, name), Nested(self.row_class)
+        if given is None and rows.get(name) is None:
+            advice = nearest(name, rows) or "; leave it out"
+            return refused(problems, path, f"there is no {self.row_class.noun} of this name{advice}")
+        if given is None:
+            return None
+        if name in rows and isinstance(given, Mapping):
+            return nested.replaced(rows[name], given, path, problems)
         if not isinstance(given, (Mapping, self.row_class)):
             keys = [key for key in keys_of(self.row_class) if key != "name"]
             return refused(problems, path, f"must be a table of {listed(keys)}, not {shown(given)}")
-        own = given.get("name", name) if isinstance(given, Mapping) else vars(given)["name"]
-        if own != name:
-            text = f"must be the name of its table, {shown(name)}, not {shown(own)}; leave it out"
+        new = {"name": name, **(given if isinstance(given, Mapping) else vars(given))}
+        if new["name"] != name:
+            text = f"must be the name of its table, {shown(name)}, not {shown(new['name'])}; leave it out"
             return refused(problems, (*path, "name"), text)
-        new = {**given, "name": name} if isinstance(given, Mapping) else given
-        return Nested(self.row_class).validated(new, path, problems)
-
-    def _too_many(self, count: int, path: Path, problems: list[Problem]) -> Any:
-        return refused(problems, path, f"must be at most {MOST_NAMED_ROWS}, not {count:,}; leave some out")
+        return nested.validated(new, path, problems)
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: {row.name: without_name(to_plain(row)) for row in value} or None}
@@ -396,5 +382,5 @@ def table_row(cls: type[SomeRow]) -> type[SomeRow]:
     The fields are made by `column_of`, or by a function for one kind, such as `number`.
     """
     made = dataclasses.dataclass(frozen=True, repr=False)(cls)
-    made.__init__.__annotations__.update(get_type_hints(made.__init__))
+    made.__init__.__annotations__ = {**get_type_hints(made.__init__), "return": None}
     return made

@@ -13,6 +13,7 @@ from typing import Any
 
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
+    COMPUTED,
     MISSING,
     WORLD_UNITS,
     Column,
@@ -76,12 +77,17 @@ LEFT_OUT = {
 }
 """What stands in a header, or has a table of its own."""
 
+SENT = {Tier.NOTHING: "nothing", Tier.ENTRIES: "those entries, no word"}
+"""What edits send to the display, except those that send all words."""
+
 
 def tiers() -> Iterator[str]:
     """The table of the costs of edits."""
     yield "| an edit costs | computed again | sent to the display |"
     yield "|---|---|---|"
-    yield from (f"| {tier.name.lower()} | {tier.computed} | {tier.sent} |" for tier in Tier)
+    for tier in Tier:
+        sent = SENT.get(tier, "all words, the entries that differ")
+        yield f"| {tier.name.lower()} | {COMPUTED[tier]} | {sent} |"
     yield ""
 
 

@@ -77,7 +77,10 @@ SENTENCES: list[tuple[tuple[Kind[Any], Any], str]] = [
         (VectorKind(), "1,2,3"),
         "it must be three finite numbers of at most 1e36, not '1,2,3'; write them as in [1, 2, 3]",
     ),
-    ((VectorKind(has_length=True), (0, 0, 0)), "it must have a length above 0, not (0, 0, 0); change it"),
+    (
+        (VectorKind(has_length=True), (0, 0, 0)),
+        "it must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0",
+    ),
     ((Reference("surfaces"), 3), "it must be a string of at least one character, not 3"),
     ((Reference("lights", "eye"), 3), "it must be 'eye' or the name of a light, not 3"),
     ((References("lights"), "key"), "it must be a list of names, not 'key'"),

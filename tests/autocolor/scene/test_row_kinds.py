@@ -278,7 +278,7 @@ INVALID: list[tuple[Any, str]] = [
     ({"": None}, f"{BY_NAME}by ''; name it by at least one character"),
     (
         {"left\ndoor": {**PLANE, "direction": (0, 0, 0)}},
-        ".'left\\ndoor'.direction must have a length above 0, not (0, 0, 0); change it",
+        ".'left\\ndoor'.direction must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0",
     ),
     (
         {0: None, "a": None},
@@ -292,7 +292,7 @@ INVALID: list[tuple[Any, str]] = [
         {"left": {"on": 3}, "top": {"point": 1, "direction": (0, 0, 0)}},
         ".left.on must be true or false, not 3\n"
         "light 'key': half_spaces.top.point must be three finite numbers of at most 1e36, not 1\n"
-        "light 'key': half_spaces.top.direction must have a length above 0, not (0, 0, 0); change it",
+        "light 'key': half_spaces.top.direction must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0",
     ),
 ]
 FEW = " must be at most 64, not {}; leave some out"
