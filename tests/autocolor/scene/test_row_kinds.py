@@ -262,6 +262,7 @@ def test_all_rows_are_changed_or_replaced_at_once() -> None:
 
 BY_NAME = " must be a table of half-spaces by name, not "
 A_TABLE = " must be a table of point, direction, edge_width, carried and on, not "
+NO_DIRECTION = "must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0"
 ITS_NAME = ".top.name must be the name of its table, 'top', not "
 INVALID: list[tuple[Any, str]] = [
     ({"left": {"edge_widt": 1}}, ".left: there is no field 'edge_widt'; did you mean 'edge_width'?"),
@@ -278,7 +279,7 @@ INVALID: list[tuple[Any, str]] = [
     ({"": None}, f"{BY_NAME}by ''; name it by at least one character"),
     (
         {"left\ndoor": {**PLANE, "direction": (0, 0, 0)}},
-        ".'left\\ndoor'.direction must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0",
+        f".'left\\ndoor'.direction {NO_DIRECTION}",
     ),
     (
         {0: None, "a": None},
@@ -292,7 +293,7 @@ INVALID: list[tuple[Any, str]] = [
         {"left": {"on": 3}, "top": {"point": 1, "direction": (0, 0, 0)}},
         ".left.on must be true or false, not 3\n"
         "light 'key': half_spaces.top.point must be three finite numbers of at most 1e36, not 1\n"
-        "light 'key': half_spaces.top.direction must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0",
+        f"light 'key': half_spaces.top.direction {NO_DIRECTION}",
     ),
 ]
 FEW = " must be at most 64, not {}; leave some out"
