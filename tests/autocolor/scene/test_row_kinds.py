@@ -1,13 +1,14 @@
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Light, Part, Surface
+from autocolor import Flap, Light, Paint, Part, Scene, Surface, View
 from autocolor.errors import InputError
 from autocolor.scene.columns import (
     Row,
@@ -15,6 +16,7 @@ from autocolor.scene.columns import (
     column_of,
     cost,
     difference,
+    fields_of,
     from_plain,
     keys_of,
     replaced,
@@ -180,6 +182,35 @@ def test_columns_that_refer_to_other_tables_are_known_also_inside_others() -> No
     assert references_of(Surface) == {}
     _, field, is_inside = references_of(Light)["only_parts"]
     assert (field, is_inside) == ("links", True)
+
+
+def test_a_missing_misspelt_or_wrong_argument_is_found_by_type_checkers_and_at_run_time() -> None:
+    # mypy reports a comment that ignores nothing, so each of these is an error for it.
+    with pytest.raises(TypeError, match="missing 2 required positional arguments: 'name' and 'position'"):
+        Light()  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="unexpected keyword argument 'concentrtion'"):
+        Light("key", (0, 0, 0), concentrtion=1)  # type: ignore[call-arg]
+    with pytest.raises(InputError, match="concentration must be a finite number of at least 0, not 'x'"):
+        Light("key", (0, 0, 0), concentration="x")  # type: ignore[arg-type]
+    with pytest.raises(AttributeError):
+        Light("key", (0, 0, 0)).intensity = 2  # type: ignore[misc]
+    with pytest.raises(TypeError, match="'help'"):
+        number(default=1.0, tier=Tier.LIGHT)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="'at_leest'"):
+        number(default=1.0, at_leest=0, tier=Tier.LIGHT, help="")  # type: ignore[call-arg]
+    length: float = number(default=None, tier=Tier.LIGHT, help="")  # type: ignore[arg-type]
+    name: str = number(tier=Tier.LIGHT, help="")  # type: ignore[assignment]
+    del length, name
+
+
+def test_the_signature_of_a_row_class_has_plain_types_and_defaults() -> None:
+    assert str(inspect.signature(Box)).replace(f"{__name__}.", "") == (
+        "(name: str, shape: Shape = Shape(), lid: Lid | None = None, beside: str | None = None) -> None"
+    )
+    for cls in (Flap, Light, Paint, Part, Scene, Surface, View):
+        types = inspect.get_annotations(cls.__init__)
+        for key, column in fields_of(cls).items():
+            assert (type(None) in get_args(types[key])) == column.is_optional, key
 
 
 LEFT = HalfSpace("left", (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0))
