@@ -53,7 +53,7 @@ def test_a_document_is_up_to_date(path: str, document: Callable[[], str]) -> Non
 @pytest.mark.parametrize(("title", "text", "cls"), columns.TABLES)
 def test_every_key_of_a_table_has_a_line_with_its_help(title: str, text: str, cls: type[Row]) -> None:
     lines = "\n".join(columns.lines_of(title, text, cls))
-    for key, (column, _, _) in keys_of(cls).items():
+    for key, (column, _) in keys_of(cls).items():
         assert (f"| `{key}` | {column.help}" in lines) == (key not in columns.LEFT_OUT.get(cls, ()))
 
 

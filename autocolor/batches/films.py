@@ -27,7 +27,7 @@ from autocolor.files.settings import field_of, place_of, scene_with, value_at
 from autocolor.files.writing import refusals_of_this_package, refuse_output, write_atomically
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.rendering import sees_the_same
-from autocolor.scene.columns import COMPUTED, Tier
+from autocolor.scene.columns import Tier
 from autocolor.scene.scene import NORMALS, Scene, costs_at_least
 from autocolor.sending import send_cycle
 from ramtek_emu import Recorder
@@ -241,7 +241,7 @@ def _check_entries_alone(first: Scene, other: Scene, variants: tuple[Variant, ..
     by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
     raise InputError(
         f"frame {number}: a frame of a stream must change entries of the lookup table alone, and an edit of"
-        f" {key} computes {COMPUTED[tier]} again; write a film such as .webp{by_normals}"
+        f" {key} changes words; write a film such as .webp{by_normals}"
     )
 
 

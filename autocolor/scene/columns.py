@@ -76,17 +76,16 @@ class About(TypedDict, Generic[Default], total=False):
 
 
 def column_of(kind: Kind[Value], **about: Unpack[About[Default]]) -> Value | Default:
-    """A field of a row class whose values are of a kind. Without a `bar`, it has that of the kind's limits.
+    """A field of a row class whose values are of a kind.
 
     Type checkers see the type of its values, with that of its default.
     """
-    keywords: Any = {"bar": kind.bar(), **about}
-    made = Column(kind, **keywords)
+    made = Column(kind, **about)
     return cast("Value | Default", dataclasses.field(default=made.default, metadata={"column": made}))
 
 
 class Tier(IntEnum):
-    """What an edit of a column costs, in increasing order; see COMPUTED."""
+    """What an edit of a column costs, in increasing order; each computes again all that a lower one does."""
 
     NOTHING = 0
     ENTRIES = 1
@@ -102,16 +101,6 @@ LEVELS: Final = Tier.LEVELS
 MIX: Final = Tier.MIX
 LIGHT: Final = Tier.LIGHT
 FRAME: Final = Tier.FRAME
-
-COMPUTED: Final = (
-    "nothing",
-    "entries of the lookup table",
-    "the levels",
-    "the weighted sum of the lights",
-    "one light, or all lights on one surface",
-    "everything",
-)
-"""What an edit of each tier computes again; every lower tier follows."""
 
 Path = tuple[str | int, ...]
 """The keys and row numbers that lead from a row to a value inside it."""
@@ -163,10 +152,6 @@ class Kind(Generic[Value]):
         plain = {} if repr(one) == repr(other) else self.to_plain(name, other)
         return {key: other if value is None else value for key, value in plain.items()}
 
-    def bar(self) -> BarRange | None:
-        """The bar of the kind's own limits; None unless it has numbers with two limits."""
-        return None
-
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         """The cost of an edit from one value to another; None if equal. `own` is the tier of the column.
 
@@ -185,22 +170,18 @@ class Kind(Generic[Value]):
         Numbers are interpolated linearly, whole numbers are rounded half up, and so are rows and the elements
         of tuples, if these have the same names. Assumed: any other value holds until the other is reached.
         """
-        return _between(one, other, share)
-
-
-def _between(one: Any, other: Any, share: float) -> Any:
-    if isinstance(one, Row):
-        return one.between(other, share)
-    if isinstance(one, tuple) and _names_in(one) == _names_in(other):
-        return tuple(_between(a, b, share) for a, b in zip(one, other, strict=True))
-    if type(one) is type(other) is int:
-        return half_up(one + (other - one) * share)
-    if not (isinstance(one, float) and isinstance(other, float)) or one == other:
-        return one
-    # No bound of a flap is infinitely far away, so the bound holds.
-    if math.isinf(one) or math.isinf(other):
-        return one
-    return min(max(one * (1 - share) + other * share, min(one, other)), max(one, other))
+        if isinstance(one, Row):
+            return one.between(other, share)
+        if isinstance(one, tuple) and _names_in(one) == _names_in(other):
+            return tuple(self.between(a, b, share) for a, b in zip(one, other, strict=True))
+        if type(one) is type(other) is int:
+            return half_up(one + (other - one) * share)
+        if not (isinstance(one, float) and isinstance(other, float)) or one == other:
+            return one
+        # No bound of a flap is infinitely far away, so the bound holds.
+        if math.isinf(one) or math.isinf(other):
+            return one
+        return min(max(one * (1 - share) + other * share, min(one, other)), max(one, other))
 
 
 def _names_in(value: Any) -> Any:
@@ -248,13 +229,9 @@ class Row(Immutable):
 
     def __repr__(self) -> str:
         # Leave out fields that have their defaults.
-        values = vars(self)
-        shown_fields = [
-            f"{name}={values[name]!r}"
-            for name, column in fields_of(type(self)).items()
-            if column.default != values[name]
-        ]
-        return f"{type(self).__name__}({', '.join(shown_fields)})"
+        columns, values = fields_of(type(self)), vars(self)
+        given = [f"{name}={values[name]!r}" for name in columns if columns[name].default != values[name]]
+        return f"{type(self).__name__}({', '.join(given)})"
 
 
 SomeRow = TypeVar("SomeRow", bound=Row)
@@ -273,21 +250,19 @@ def fields_of(cls: type[Row]) -> Mapping[str, Column]:
 
 
 class RowKey(NamedTuple):
-    """A key of a row in a file: its column, its field, and whether it is a key inside the field's value."""
+    """A key of a row in a file: its column and its field, which has another name if the key is inside it."""
 
     column: Column
     field: str
-    is_inside: bool
 
 
 @cached_by_class
 def keys_of(cls: type[Row]) -> Mapping[str, RowKey]:
     """The keys of a row class in a file, in the order of its fields."""
-    keys = {name: column.kind.keys(name, column) for name, column in fields_of(cls).items()}
     return {
-        key: RowKey(column, name, is_inside=[*inner] != [name])
-        for name, inner in keys.items()
-        for key, column in inner.items()
+        key: RowKey(column, name)
+        for name, own in fields_of(cls).items()
+        for key, column in own.kind.keys(name, own).items()
     }
 
 
@@ -349,7 +324,7 @@ def _made(cls: type[SomeRow], present: dict[str, Any], changes: Mapping[str, Any
     inside: dict[str, dict[str, Any]] = {}
     for name, value in changes.items():
         key = keys.get(name)
-        if key is not None and key.is_inside:
+        if key is not None and key.field != name:
             inside.setdefault(key.field, {})[name] = value
         elif name not in fields:
             problems.append(unknown_key(name, {**fields, **keys}))
@@ -530,20 +505,3 @@ class BarRange(NamedTuple):
     low: float
     high: float
     step: float
-
-
-STEPS: Final = 100
-"""Assumed: the least number of steps of a bar, so that a step is a small change."""
-
-
-def bar_within(low: float, high: float) -> BarRange:
-    """The bar from `low` to a larger `high`, with at least STEPS steps of 1, 2 or 5 times a power of ten.
-
-    >>> bar_within(0, 180)
-    BarRange(low=0, high=180, step=1.0)
-    """
-    most = (high - low) / STEPS
-    power = 10.0 ** math.floor(math.log10(most))
-    # A step may exceed its bound by no more than rounding: 0.01 is a hundredth of 1.
-    factors = [factor for factor in (1, 2, 5, 10) if factor * power <= most * (1 + 1e-9)]
-    return BarRange(low, high, float(f"{max(factors, default=1) * power:.12g}"))

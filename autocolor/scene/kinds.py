@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from itertools import islice, pairwise
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Any, Final, Unpack
 
 import numpy as np
@@ -23,13 +23,11 @@ from autocolor.scene.columns import (
     REFUSED,
     WORLD_UNITS,
     About,
-    BarRange,
     Default,
     Kind,
     Path,
     Problem,
     Tier,
-    bar_within,
     column_of,
 )
 
@@ -78,10 +76,6 @@ class Number(Kind[float]):
         require(number == self.endless or (is_within and -math.inf < number < math.inf))
         return number
 
-    def bar(self) -> BarRange | None:
-        is_limited = -math.inf < self.at_least < self.at_most < math.inf and not self.above
-        return bar_within(self.at_least, self.at_most) if is_limited else None
-
     def to_plain(self, name: str, value: float) -> Mapping[str, object]:
         return {name: None if value == self.endless else value}
 
@@ -105,9 +99,6 @@ class Whole(Kind[int]):
     at_least: int
     at_most: int
 
-    def bar(self) -> BarRange:
-        return BarRange(self.at_least, self.at_most, 1)
-
     def rule(self) -> str:
         return f"must be a whole number from {self.at_least} to {self.at_most}"
 
@@ -116,11 +107,6 @@ class Whole(Kind[int]):
         number = int(value)
         require(self.at_least <= number <= self.at_most)
         return number
-
-
-def whole(*, at_least: int, at_most: int, **about: Unpack[About[Default]]) -> int | Default:
-    """A field of whole numbers within bounds."""
-    return column_of(Whole(at_least, at_most), **about)
 
 
 @dataclass(frozen=True)
@@ -182,14 +168,12 @@ class VectorKind(Kind[Vector]):
             return "; write them as in [1, 2, 3]"
         return "; one of them must not be 0" if self.has_length else ""
 
-    def between(self, one: Vector, other: Vector, share: float) -> Vector:
+    def between(self, one: Any, other: Any, share: float) -> Any:
         """A point moves along a line. A direction turns along a great circle, and its length is linear."""
-        if not self.has_length:
-            point: Vector = super().between(one, other, share)
-            return point
+        if not self.has_length or isinstance(one, float):
+            return super().between(one, other, share)
         length = super().between(math.hypot(*one), math.hypot(*other), share)
-        x, y, z = (length * _direction_between(one, other, share)).tolist()
-        return x, y, z
+        return tuple((length * _direction_between(one, other, share)).tolist())
 
 
 def coordinates(*, tier: Tier, help: str, default: Default = MISSING) -> Vector | Default:
@@ -361,7 +345,7 @@ class ColorKind(Kind[Color]):
         return red, green, blue
 
     def advice(self, value: object) -> str:
-        return _advice_on_text(value) if isinstance(value, str) else _advice_on_floats(value)
+        return _advice_on_text(value) if isinstance(value, str) else "; write them as in [176, 16, 32]"
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: in_digits(value)}
@@ -454,17 +438,3 @@ def _advice_on_text(text: str) -> str:
     if re.fullmatch("[A-Za-z]{2,}", text):
         return closest(text.lower(), color_names()) or '; write it as in "#b01020"'
     return '; write it as in "#b01020"'
-
-
-def _advice_on_floats(value: object) -> str:
-    """How to write the color if some of three numbers are floats; empty for any other value."""
-    try:
-        parts = list(value)  # type: ignore[call-overload]
-        require(all(isinstance(part, Real) and not isinstance(part, NO_NUMBERS) for part in parts))
-        # Numbers up to 1 are fractions, as most programs write colors with floats.
-        scale = 255 if max(parts) <= 1 else 1
-        color = ColorKind().accepted([int(float(part) * scale + 0.5) for part in parts])
-    except (TypeError, ValueError, OverflowError):
-        return ""
-    # Python, scene files and --set all write a color as a list.
-    return f"; write {list(color)} or {in_digits(color)!r}"

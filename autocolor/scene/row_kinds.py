@@ -49,7 +49,6 @@ from autocolor.scene.kinds import (
     require,
     text,
     vector,
-    whole,
 )
 
 MOST_ROWS: Final = 1_000_000
@@ -126,18 +125,18 @@ class OneRowOf(Kind[SomeRow]):
         return closest(value, self.classes) if isinstance(value, str) else ""
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
-        name = path[-1]
-        value = self.validated(table[str(name)], path, problems) if name in table else present
-        if not isinstance(value, Row):
+        name, value = path[-1], self.validated(present, path, problems)
+        if value is REFUSED:
             return value
-        own = keys_of(type(value))
-        keys = {key: inner for key, inner in table.items() if key != name}
-        for key in [key for key in keys if key not in own]:
-            owners = [repr(other) for other, cls in self.classes.items() if key in keys_of(cls)]
-            rule = f"must go with {name} = {' or '.join(owners)}, not with {self.name_of(value)!r}"
-            refused(problems, (*path[:-1], key), f"{rule}; leave it out, or change the {name}")
-            del keys[key]
-        return _inside(path[:-1], problems, replaced, value, keys) if keys else value
+        keys = dict(table)
+        for key in table:
+            owners = [other for other, cls in self.classes.items() if key in keys_of(cls)]
+            if owners and self.name_of(value) not in owners:
+                names = " or ".join(map(repr, owners))
+                rule = f"must go with {name} = {names}, not with {self.name_of(value)!r}"
+                refused(problems, (*path[:-1], key), f"{rule}; leave it out, or change the {name}")
+                del keys[key]
+        return _inside(path[:-1], problems, replaced, value, keys)
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: self.name_of(value), **to_plain(value)}
@@ -256,9 +255,9 @@ class RangesByName(Referring[RangesOrWord]):
     def accepted(self, value: Any) -> RangesOrWord:
         if isinstance(value, str):
             percent = PERCENTAGE.fullmatch(value)
-            require(value == self.none or percent is not None)
             if percent is None:
-                return self.none
+                require(value == self.none)
+                return value
             require(LEAST_PERCENT <= float(percent[1]) <= 100)
             return f"{float(percent[1]):g} %"
         pairs = list(value.items()) if isinstance(value, Mapping) else list(value)
@@ -374,7 +373,7 @@ def without_name(keys: Mapping[str, object]) -> dict[str, object]:
 
 @dataclass_transform(
     frozen_default=True,
-    field_specifiers=(column_of, number, whole, boolean, text, coordinates, vector, one_of, color, nested),
+    field_specifiers=(column_of, number, boolean, text, coordinates, vector, one_of, color, nested),
 )
 def table_row(cls: type[SomeRow]) -> type[SomeRow]:
     """The class as a frozen dataclass of columns, whose signature shows the types of their values.

@@ -34,6 +34,7 @@ from autocolor.scene.kinds import (
     ColorKind,
     ColorsKind,
     Number,
+    Whole,
     boolean,
     color,
     in_digits,
@@ -41,7 +42,6 @@ from autocolor.scene.kinds import (
     require,
     text,
     vector,
-    whole,
 )
 from autocolor.scene.row_kinds import References, table_row
 
@@ -134,18 +134,12 @@ class Scalar(Row):
     scale: str | tuple[Color, ...] = column_of(
         ScaleKind(), default="viridis", tier=ENTRIES, help="The color scale: a name, or a list of colors."
     )
-    bands: int = whole(
-        default=16,
-        at_least=2,
-        at_most=MOST_BANDS,
-        bar=BarRange(2, 64, 1),
-        tier=LEVELS,
-        help="The number of colors.",
+    bands: int = column_of(
+        Whole(2, MOST_BANDS), default=16, bar=BarRange(2, 64, 1), tier=LEVELS, help="The number of colors."
     )
-    shades: int | None = whole(
+    shades: int | None = column_of(
+        Whole(1, MOST_BANDS),
         default=None,
-        at_least=1,
-        at_most=MOST_BANDS,
         bar=BarRange(1, 16, 1),
         start=8,
         tier=LEVELS,

@@ -485,7 +485,7 @@ def _missing_names(rows: Sequence[Row], key: str, at: RowKey, names: Sequence[st
     kind: Any = at.column.kind
     for row in rows:
         value = vars(row)[at.field]
-        if at.is_inside:
+        if at.field != key:
             value = vars(value)[key] if isinstance(value, Row) else REFUSED
         for name in () if value is REFUSED or value is None else kind.names_in(value):
             if name not in existing:

@@ -26,7 +26,7 @@ from autocolor.scene.columns import (
     column_of,
     replaced,
 )
-from autocolor.scene.kinds import ColorsKind, boolean, color, number, text, whole
+from autocolor.scene.kinds import ColorsKind, Whole, boolean, color, number, text
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
 from autocolor.scene.row_kinds import OneRowOf, Reference, nested, table_row
 
@@ -138,6 +138,7 @@ class Paint(Row):
         at_least=0,
         at_most=1,
         unit="fraction of the range of levels",
+        bar=BarRange(0, 1, 0.01),
         tier=ENTRIES,
         help="The level above which the light color blends in; 1 for no blending.",
     )
@@ -146,6 +147,7 @@ class Paint(Row):
         at_least=0,
         at_most=100,
         unit="percent",
+        bar=BarRange(0, 100, 1),
         tier=ENTRIES,
         help="The share of the light color at the highest level.",
     )
@@ -206,10 +208,9 @@ class Surface(Row):
     two_sided: bool = boolean(
         default=True, tier=FRAME, help="Whether normals of polygons seen from behind are turned to the eye."
     )
-    levels: int | None = whole(
+    levels: int | None = column_of(
+        Whole(2, MOST_LEVELS),
         default=None,
-        at_least=2,
-        at_most=MOST_LEVELS,
         bar=BarRange(2, 256, 1),
         start=64,
         tier=LEVELS,

@@ -15,7 +15,7 @@ from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import Vector
-from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, bar_within, fields_of
+from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, fields_of
 from autocolor.scene.kinds import (
     AngleCurve,
     AngleCurveKind,
@@ -29,7 +29,7 @@ from autocolor.scene.kinds import (
     in_digits,
 )
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
-from autocolor.widgets.bars import Bar, rounded_to
+from autocolor.widgets.bars import Bar, bar_within, rounded_to
 from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
 
 Put = Callable[[Mapping[str, object]], object]

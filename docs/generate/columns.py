@@ -13,7 +13,6 @@ from typing import Any
 
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
-    COMPUTED,
     MISSING,
     WORLD_UNITS,
     Column,
@@ -77,17 +76,25 @@ LEFT_OUT = {
 }
 """What stands in a header, or has a table of its own."""
 
-SENT = {Tier.NOTHING: "nothing", Tier.ENTRIES: "those entries, no word"}
-"""What edits send to the display, except those that send all words."""
+WORDS = "all words, the entries that differ"
+
+COSTS = {
+    Tier.NOTHING: ("nothing", "nothing"),
+    Tier.ENTRIES: ("entries of the lookup table", "those entries, no word"),
+    Tier.LEVELS: ("the levels", WORDS),
+    Tier.MIX: ("the weighted sum of the lights", WORDS),
+    Tier.LIGHT: ("one light, or all lights on one surface", WORDS),
+    Tier.FRAME: ("everything", WORDS),
+}
+"""What an edit of each tier computes again, and what it sends to the display."""
 
 
 def tiers() -> Iterator[str]:
     """The table of the costs of edits."""
     yield "| an edit costs | computed again | sent to the display |"
     yield "|---|---|---|"
-    for tier in Tier:
-        sent = SENT.get(tier, "all words, the entries that differ")
-        yield f"| {tier.name.lower()} | {COMPUTED[tier]} | {sent} |"
+    for tier, (computed, sent) in COSTS.items():
+        yield f"| {tier.name.lower()} | {computed} | {sent} |"
     yield ""
 
 
@@ -103,7 +110,7 @@ def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
         yield f"{text}\n"
     yield "| key | what it is | unit | value | default | on a bar | an edit costs |"
     yield "|---|---|---|---|---|---|---|"
-    for key, (column, field, _) in keys_of(cls).items():
+    for key, (column, field) in keys_of(cls).items():
         if key not in LEFT_OUT.get(cls, ()):
             rule = column.kind.rule().removeprefix("must be ")
             text = f"{column.help}{going_with(fields_of(cls)[field].kind, key)}"

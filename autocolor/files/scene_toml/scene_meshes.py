@@ -60,6 +60,7 @@ class MeshEntry(Row):
         CREASE_ANGLES,
         default=None,
         unit="degrees",
+        bar=BarRange(0, 180, 1),
         tier=FRAME,
         help="Polygons that meet at a larger angle keep a sharp edge; the same for all meshes.",
     )

@@ -13,13 +13,11 @@ from autocolor import Flap, Light, Scene, Surface, View
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
     WORLD_UNITS,
-    BarRange,
     Column,
     Problem,
     Row,
     RowError,
     Tier,
-    bar_within,
     cost,
     difference,
     fields_of,
@@ -37,7 +35,7 @@ from tests.tables import call, refused
 NUMBERS = [
     pytest.param(column, id=f"{cls.__name__}.{key}")
     for cls in (Flap, Light, Surface, View, Scene, MeshEntry)
-    for key, (column, _, _) in keys_of(cls).items()
+    for key, (column, _) in keys_of(cls).items()
     if isinstance(column.kind, (Number, Whole))
 ]
 
@@ -89,14 +87,6 @@ def test_a_number_that_may_be_absent_tells_what_it_starts_with(cls: type[Row]) -
             assert column.start is None
             assert isinstance(column.default, float)
             assert bar.low <= column.default <= bar.high
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "step"),
-    [(0, 1, 0.01), (0, 100, 1), (0, 180, 1), (-180, 180, 2), (3, 3.004, 2e-5), (0, 3e-9, 2e-11)],
-)
-def test_a_bar_has_round_steps_of_at_most_a_hundredth(low: float, high: float, step: float) -> None:
-    assert bar_within(low, high) == BarRange(low, high, step)
 
 
 def test_each_of_64_unknown_keys_is_a_problem() -> None:

@@ -403,7 +403,7 @@ def test_every_number_has_its_limits() -> None:
     rules = {
         f"{table}.{key}".strip("."): column.kind.rule()
         for table, cls in CLASSES.items()
-        for key, (column, _, _) in keys_of(cls).items()
+        for key, (column, _) in keys_of(cls).items()
         if isinstance(column.kind, (Number, Whole))
     }
     assert rules == {key: f"must be a {rule}" for rule, keys in NUMBERS.items() for key in keys.split()}

@@ -180,8 +180,7 @@ def test_names_that_refer_to_other_rows_are_found_and_words_are_none() -> None:
 def test_columns_that_refer_to_other_tables_are_known_also_inside_others() -> None:
     assert [*references_of(Part)] == ["surface"]
     assert references_of(Surface) == {}
-    _, field, is_inside = references_of(Light)["only_parts"]
-    assert (field, is_inside) == ("links", True)
+    assert references_of(Light)["only_parts"].field == "links"
 
 
 def test_a_missing_misspelt_or_wrong_argument_is_found_by_type_checkers_and_at_run_time() -> None:

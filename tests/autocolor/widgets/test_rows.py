@@ -16,6 +16,7 @@ from autocolor.scene.kinds import (
     AngleCurve,
     AngleCurveKind,
     CurveKind,
+    Whole,
     boolean,
     color,
     coordinates,
@@ -23,7 +24,6 @@ from autocolor.scene.kinds import (
     one_of,
     text,
     vector,
-    whole,
 )
 from autocolor.scene.row_kinds import NamedRows, OneRowOf, Reference, References, nested, table_row
 from autocolor.widgets.bars import Bar
@@ -62,7 +62,7 @@ class Smooth(Row):
 
 @table_row
 class Coarse(Row):
-    size: int = whole(default=3, at_least=1, at_most=9, tier=MIX, help="How coarse.")
+    size: int = column_of(Whole(1, 9), default=3, tier=MIX, help="How coarse.")
 
 
 @table_row
@@ -96,8 +96,10 @@ class Lamp(Row):
         tier=MIX,
         help="A tilt.",
     )
-    blades: int = whole(default=6, at_least=2, at_most=12, tier=MIX, help="Blades.")
-    count: int | None = whole(default=None, at_least=1, at_most=100, tier=MIX, help="A count.")
+    blades: int = column_of(Whole(2, 12), default=6, bar=BarRange(2, 12, 1), tier=MIX, help="Blades.")
+    count: int | None = column_of(
+        Whole(1, 100), default=None, bar=BarRange(1, 100, 1), tier=MIX, help="A count."
+    )
     reach: float = number(default=1.0, unit=WORLD_UNITS, tier=MIX, help="How far.")
     on: bool = boolean(default=True, tier=MIX, help="Whether it is on.")
     mode: str = one_of(("wide", "narrow"), default="wide", tier=MIX, help="Its mode.")
@@ -112,7 +114,7 @@ class Lamp(Row):
     sheen: AngleCurve | None = column_of(
         AngleCurveKind(0.1, ((0.0, 0.2), (40.0, 0.4), (90.0, 1.0))), default=None, tier=MIX, help="Its sheen."
     )
-    curve: str = column_of(CurveKind({"linear": 1}), default="linear", tier=MIX, help="Its curve.")
+    curve: object = column_of(CurveKind({"linear": 1}), default="linear", tier=MIX, help="Its curve.")
     hoods: tuple[Hood, ...] = column_of(NamedRows(Hood), default=(), tier=MIX, help="Its hoods.")
     follows: str | None = column_of(Reference("lamps", "sun"), default=None, tier=MIX, help="What leads.")
     post: str = column_of(Reference("posts"), default="a", tier=MIX, help="Its post.")

@@ -21,7 +21,7 @@ from autocolor.files.store.schema import (
 )
 from autocolor.files.store.store_file import read_store
 from autocolor.scene.columns import Row, Tier, column_of, from_plain, keys_of
-from autocolor.scene.kinds import boolean, color, coordinates, number, one_of, text, vector, whole
+from autocolor.scene.kinds import Whole, boolean, color, coordinates, number, one_of, text, vector
 from autocolor.scene.reflection_models import MODELS
 from autocolor.scene.row_kinds import OneRowOf, Reference, References, nested, table_row
 from autocolor.scene.scalar import Scalar
@@ -54,7 +54,7 @@ class MadeUp(Row):
     """A row class with a column of each kind, which nothing else knows of."""
 
     name: str = text(tier=FREE, help="")
-    order: int = whole(at_least=1, at_most=5, tier=FREE, help="")
+    order: int = column_of(Whole(1, 5), tier=FREE, help="")
     group: str = one_of(("a", "it's"), default="it's", tier=FREE, help="")
     place: tuple[float, float, float] = coordinates(default=(1.0, 2.0, 3.0), tier=FREE, help="")
     way: tuple[float, float, float] | None = vector(default=None, tier=FREE, help="")
