@@ -121,5 +121,5 @@ def _values(scene: Scene, key: str) -> list[str]:
         value = value.get(part) if isinstance(value, dict) else None
     if isinstance(value, bool):
         return ["true", "false"]
-    present = [] if value is None or isinstance(value, (dict, list)) else [str(value)]
+    present = [] if value is None or isinstance(value, (dict, list, tuple)) else [str(value)]
     return [*present, *color_names()] if isinstance(kind, ColorKind) else present

@@ -196,17 +196,17 @@ def _direction_between(one: Vector, other: Vector, share: float) -> Floats:
     Assumed: opposite directions turn through the vertical; from the vertical, through +x.
     """
     start, end = np.array(unit_vector(one)), np.array(unit_vector(other))
-    cosine, sine = float((start * end).sum()), 0.0
-    for toward in (end, np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])):
-        # The component at right angles to the start.
-        aside = toward - float((start * toward).sum()) * start
-        sine = math.hypot(*aside)
-        if sine >= LEAST_SINE:
-            break
-        if toward is end and cosine > 0:
-            return start
-    angle = math.atan2(sine if toward is end else 0.0, cosine)
-    return math.cos(share * angle) * start + math.sin(share * angle) / sine * aside
+    cosine = float((start * end).sum())
+    # The component at right angles to the start.
+    aside = end - cosine * start
+    angle = math.atan2(math.hypot(*aside), cosine)
+    for other_way in ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]):
+        if math.hypot(*aside) < LEAST_SINE:
+            if cosine > 0:
+                return start
+            aside = other_way - (start * other_way).sum() * start
+    x, y, z = aside.tolist()
+    return math.cos(share * angle) * start + math.sin(share * angle) * np.array(unit_vector((x, y, z)))
 
 
 @dataclass(frozen=True)

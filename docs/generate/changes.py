@@ -7,34 +7,14 @@ writes `autocolor/scene/changes.py`. The shell's `>` would empty the file before
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from autocolor.scene.columns import Column, Kind, Row, fields_of, keys_of
-from autocolor.scene.kinds import (
-    AngleCurveKind,
-    Boolean,
-    ColorKind,
-    ColorsKind,
-    CurveKind,
-    Number,
-    OneOf,
-    Text,
-    VectorKind,
-    Whole,
-)
+from autocolor.scene.kinds import OneOf
 from autocolor.scene.lights import Flap, Flaps, HalfSpace, Light, Links
-from autocolor.scene.row_kinds import (
-    NamedRows,
-    Nested,
-    OneRowOf,
-    RangesByName,
-    Reference,
-    References,
-    RowList,
-)
-from autocolor.scene.scalar import EndColor, LimitsKind, PlaceKind, Scalar, ScaleKind
+from autocolor.scene.row_kinds import NamedRows, Nested
+from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
 from autocolor.scene.view import NamedView, View
@@ -71,30 +51,28 @@ from typing import Literal, TypedDict
 from autocolor.scene.columns import Row
 '''
 
-COLOR = "str | Sequence[int]"
-COLORS = "str | Sequence[str | Sequence[int]]"
-
-ACCEPTED: Mapping[type[Kind[Any]], str] = {
-    Number: "float",
-    Whole: "int",
-    Boolean: "bool",
-    Text: "str",
-    VectorKind: "Sequence[float]",
-    LimitsKind: "Sequence[float]",
-    PlaceKind: "Sequence[float]",
-    CurveKind: "str | Sequence[Sequence[float]]",
-    AngleCurveKind: "Sequence[Sequence[float]]",
-    ColorKind: COLOR,
-    EndColor: COLOR,
-    ColorsKind: COLORS,
-    ScaleKind: COLORS,
-    OneRowOf: "str | Row",
-    RowList: "Sequence[Row]",
-    Reference: "str",
-    References: "Sequence[str]",
-    RangesByName: "str | Mapping[str, Sequence[float]] | Sequence[tuple[str, Sequence[float]]]",
+ACCEPTED = {
+    "Number": "float",
+    "Whole": "int",
+    "Boolean": "bool",
+    "Text": "str",
+    "VectorKind": "Sequence[float]",
+    "LimitsKind": "Sequence[float]",
+    "PlaceKind": "Sequence[float]",
+    "CurveKind": "str | Sequence[Sequence[float]]",
+    "AngleCurveKind": "Sequence[Sequence[float]]",
+    "ColorKind": "str | Sequence[int]",
+    "EndColor": "str | Sequence[int]",
+    "ColorsKind": "str | Sequence[str | Sequence[int]]",
+    "ScaleKind": "str | Sequence[str | Sequence[int]]",
+    "Instance": "object",
+    "OneRowOf": "str | Row",
+    "RowList": "Sequence[Row]",
+    "Reference": "str",
+    "References": "Sequence[str]",
+    "RangesByName": "str | Mapping[str, Sequence[float]] | Sequence[tuple[str, Sequence[float]]]",
 }
-"""The types of the values that a kind accepts."""
+"""The types of the values that a kind accepts, by the name of the kind's class."""
 
 MADE_FROM_THE_MESH = ("mesh", "parts", "surfaces")
 """The columns of a scene that `scene_of` makes from the mesh and the rows that it is given."""
@@ -107,10 +85,8 @@ def source() -> str:
 
 def class_of_changes(cls: type[Row]) -> str:
     """The type of the changes of one class of rows; the keys of inline rows are inherited."""
-    kinds = [column.kind for column in fields_of(cls).values()]
-    inline = [
-        f"{kind.row_class.__name__}Changes" for kind in kinds if isinstance(kind, Nested) and kind.inline
-    ]
+    kinds: list[Any] = [column.kind for column in fields_of(cls).values() if is_inline(column)]
+    inline = [f"{kind.row_class.__name__}Changes" for kind in kinds]
     return written(f"{cls.__name__}Changes", ", ".join(inline) or "TypedDict", types_of(cls))
 
 
@@ -122,18 +98,18 @@ def classes_of_a_scene() -> str:
 
 
 def types_of(cls: type[Row]) -> dict[str, str]:
-    """The type of each field, and of each key of a row of one of several classes."""
+    """The type of each field and key, without the keys of inline rows."""
+    fields = fields_of(cls)
+    own = {key: at.column for key, at in keys_of(cls).items() if not is_inline(fields[at.field])}
     return {
         key: accepted(column.kind) + (" | None" if column.is_optional else "")
-        for name, field in fields_of(cls).items()
-        for key, column in [(name, field), *variants(field.kind)]
+        for key, column in {**fields, **own}.items()
     }
 
 
-def variants(kind: Kind[Any]) -> Iterator[tuple[str, Column]]:
-    """The keys of each class that a row can have, with their columns, also those of inline rows."""
-    for cls in kind.classes.values() if isinstance(kind, OneRowOf) else ():
-        yield from ((key, at.column) for key, at in keys_of(cls).items())
+def is_inline(column: Column) -> bool:
+    """Whether a column has rows whose keys stand among those of the containing row."""
+    return isinstance(column.kind, Nested) and column.kind.inline
 
 
 def accepted(kind: Kind[Any]) -> str:
@@ -144,7 +120,7 @@ def accepted(kind: Kind[Any]) -> str:
         return f"Row | {kind.row_class.__name__}Changes"
     if isinstance(kind, NamedRows):
         return f"Mapping[str, Row | {kind.row_class.__name__}Changes | None] | Sequence[Row]"
-    return ACCEPTED.get(type(kind), "object")
+    return ACCEPTED[type(kind).__name__]
 
 
 def written(name: str, base: str, types: dict[str, str]) -> str:
