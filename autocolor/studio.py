@@ -48,7 +48,7 @@ from autocolor.mapping.ranges import LevelRange
 from autocolor.rendering import Rendering, block_for, blocks_of, rendering, sees_the_same
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns import Tier, fields_of
-from autocolor.scene.scene import AUTO, NORMALS, OF_LEVELS, Scene, cost_of_edit
+from autocolor.scene.scene import AUTO, LEVELS, NORMALS, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
 from autocolor.sending import configuration_of, send_image, shown_colors
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
@@ -257,7 +257,7 @@ class Studio:
         All points with one normal then have one intensity: lights and the eye count as far away. Raises
         InputError if a scalar colors surfaces.
         """
-        self.edit(self.scene.replace(words=NORMALS if on else OF_LEVELS))
+        self.edit(self.scene.replace(words=NORMALS if on else LEVELS))
 
     def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
         """Hold the intensity ranges of the current picture, so that less light looks darker from now on.

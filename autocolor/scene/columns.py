@@ -5,7 +5,7 @@
         noun: ClassVar[str] = "light"
 
         concentration: float = number(
-            default=0.0, at_least=0, tier=LIGHT, help="How narrow the light is."
+            default=0.0, at_least=0, tier=Tier.LIGHT, help="How narrow the light is."
         )
 
 The checks at construction, scene files, `--set`, `--json`, the table store, the journal, menus and documents
@@ -94,13 +94,6 @@ class Tier(IntEnum):
     LIGHT = 4
     FRAME = 5
 
-
-NOTHING: Final = Tier.NOTHING
-ENTRIES: Final = Tier.ENTRIES
-LEVELS: Final = Tier.LEVELS
-MIX: Final = Tier.MIX
-LIGHT: Final = Tier.LIGHT
-FRAME: Final = Tier.FRAME
 
 Path = tuple[str | int, ...]
 """The keys and row numbers that lead from a row to a value inside it."""

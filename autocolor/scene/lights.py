@@ -23,14 +23,12 @@ from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges, LightChanges, LinksChanges
 from autocolor.scene.columns import (
-    LIGHT,
-    MIX,
-    NOTHING,
     WORLD_UNITS,
     BarRange,
     Problem,
     Row,
     RowError,
+    Tier,
     column_of,
     fields_of,
     replaced,
@@ -69,22 +67,22 @@ class Flap(Row):
         default=-math.inf,
         endless=-math.inf,
         unit=WORLD_UNITS,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The smallest coordinate that is lit.",
     )
     maximum: float = number(
         default=math.inf,
         endless=math.inf,
         unit=WORLD_UNITS,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The largest coordinate that is lit.",
     )
-    on: bool = boolean(default=True, tier=LIGHT, help="Whether the flap restricts the light.")
+    on: bool = boolean(default=True, tier=Tier.LIGHT, help="Whether the flap restricts the light.")
     edge_width: float = number(
         default=0.0,
         at_least=0,
         unit=WORLD_UNITS,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The distance inside the ends to full light; 0 for sharp edges.",
     )
 
@@ -105,9 +103,9 @@ class Flaps(Row):
 
     noun: ClassVar[str] = "flaps"
 
-    x: Flap | None = nested(Flap, default=None, tier=LIGHT, help="The range of X that is lit.")
-    y: Flap | None = nested(Flap, default=None, tier=LIGHT, help="The range of Y that is lit.")
-    z: Flap | None = nested(Flap, default=None, tier=LIGHT, help="The range of Z that is lit.")
+    x: Flap | None = nested(Flap, default=None, tier=Tier.LIGHT, help="The range of X that is lit.")
+    y: Flap | None = nested(Flap, default=None, tier=Tier.LIGHT, help="The range of Y that is lit.")
+    z: Flap | None = nested(Flap, default=None, tier=Tier.LIGHT, help="The range of Z that is lit.")
 
     def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
         """The flaps with some of them changed; a table of fields changes only these fields of a flap."""
@@ -126,22 +124,22 @@ class HalfSpace(Row):
 
     noun: ClassVar[str] = "half-space"
 
-    name: str = text(tier=NOTHING, help="The name of the half-space, unique for the light.")
-    point: Vector = coordinates(tier=LIGHT, help="A point of the plane.")
+    name: str = text(tier=Tier.NOTHING, help="The name of the half-space, unique for the light.")
+    point: Vector = coordinates(tier=Tier.LIGHT, help="A point of the plane.")
     direction: Vector = vector(
-        tier=LIGHT, help="The direction from the plane to the side that is lit, of any length."
+        tier=Tier.LIGHT, help="The direction from the plane to the side that is lit, of any length."
     )
     edge_width: float = number(
         default=0.0,
         at_least=0,
         unit=WORLD_UNITS,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The distance inside the plane to full light; 0 for a sharp edge.",
     )
     carried: bool = boolean(
-        default=False, tier=LIGHT, help="Whether it moves and turns with the light, like a barn door."
+        default=False, tier=Tier.LIGHT, help="Whether it moves and turns with the light, like a barn door."
     )
-    on: bool = boolean(default=True, tier=LIGHT, help="Whether the half-space restricts the light.")
+    on: bool = boolean(default=True, tier=Tier.LIGHT, help="Whether the half-space restricts the light.")
 
     @classmethod
     def through(
@@ -207,20 +205,20 @@ class Links(Row):
     only_surfaces: Names | None = column_of(
         References("surfaces"),
         default=None,
-        tier=MIX,
+        tier=Tier.MIX,
         help="The surfaces that it shines on; if absent, all surfaces.",
     )
     except_surfaces: Names | None = column_of(
-        References("surfaces"), default=None, tier=MIX, help="The surfaces that it does not shine on."
+        References("surfaces"), default=None, tier=Tier.MIX, help="The surfaces that it does not shine on."
     )
     only_parts: Names | None = column_of(
         References("parts"),
         default=None,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The parts that it shines on; if absent, all parts.",
     )
     except_parts: Names | None = column_of(
-        References("parts"), default=None, tier=LIGHT, help="The parts that it does not shine on."
+        References("parts"), default=None, tier=Tier.LIGHT, help="The parts that it does not shine on."
     )
 
     def rules(self) -> Iterator[Problem]:
@@ -285,27 +283,27 @@ class Light(Row):
     noun: ClassVar[str] = "light"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("aim",))
 
-    name: str = text(tier=LIGHT, help="The name of the light, which must be unique.")
-    position: Vector = coordinates(tier=LIGHT, help="The position of the light.")
+    name: str = text(tier=Tier.LIGHT, help="The name of the light, which must be unique.")
+    position: Vector = coordinates(tier=Tier.LIGHT, help="The position of the light.")
     intensity: float = number(
         default=1.0,
         at_least=0,
         bar=BarRange(0, 2, 0.01),
-        tier=MIX,
+        tier=Tier.MIX,
         help="The intensity of the light, without an upper limit.",
     )
-    on: bool = boolean(default=True, tier=MIX, help="Whether the light is switched on.")
+    on: bool = boolean(default=True, tier=Tier.MIX, help="Whether the light is switched on.")
     direction: Vector | None = vector(
-        default=None, tier=LIGHT, help="The direction of the light, of any length; excludes an aim."
+        default=None, tier=Tier.LIGHT, help="The direction of the light, of any length; excludes an aim."
     )
     aim: Vector | None = coordinates(
-        default=None, tier=LIGHT, help="The point at which the light is aimed; excludes a direction."
+        default=None, tier=Tier.LIGHT, help="The point at which the light is aimed; excludes a direction."
     )
     concentration: float = number(
         default=0.0,
         at_least=0,
         bar=BarRange(0, 100, 1),
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="C: the exponent of the cosine of the angle from the direction; exact to 1e-4 up to 100,000.",
     )
     cone_angle: float | None = number(
@@ -316,7 +314,7 @@ class Light(Row):
         unit="degrees",
         bar=BarRange(1, 90, 1),
         start=30.0,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="A: the largest angle from the direction that is lit; if absent, there is no cone.",
     )
     inner_angle: float | None = number(
@@ -326,20 +324,20 @@ class Light(Row):
         unit="degrees",
         bar=BarRange(0, 90, 1),
         start=0.0,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The angle of full light inside the cone; if absent, the cone is sharp. Edges are exact to 1e-4"
         " from 0.1 degrees on.",
     )
     flaps: Flaps = nested(
-        Flaps, default=Flaps(), tier=LIGHT, help="The ranges of object coordinates that are lit."
+        Flaps, default=Flaps(), tier=Tier.LIGHT, help="The ranges of object coordinates that are lit."
     )
     half_spaces: tuple[HalfSpace, ...] = column_of(
-        NamedRows(HalfSpace), default=(), tier=LIGHT, help="Flaps along any planes, by name."
+        NamedRows(HalfSpace), default=(), tier=Tier.LIGHT, help="Flaps along any planes, by name."
     )
     falloff: str = one_of(
         FALLOFFS,
         default="none",
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="How the light decreases with the distance, to nothing at its reach.",
     )
     reach: float | None = number(
@@ -347,20 +345,22 @@ class Light(Row):
         at_least=0,
         above=True,
         unit=WORLD_UNITS,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The distance at which a light with falloff ends.",
     )
     at_infinity: bool = boolean(
-        default=False, tier=LIGHT, help="Whether its rays are parallel, as if it were infinitely far away."
+        default=False,
+        tier=Tier.LIGHT,
+        help="Whether its rays are parallel, as if it were infinitely far away.",
     )
     follows: str | None = column_of(
         Reference("lights", EYE),
         default=None,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="What it moves with: 'eye', or another light's name for the aim of that light.",
     )
     links: Links = nested(
-        Links, default=Links(), inline=True, tier=LIGHT, help="The surfaces and parts that it shines on."
+        Links, default=Links(), inline=True, tier=Tier.LIGHT, help="The surfaces and parts that it shines on."
     )
 
     def rules(self) -> Iterator[Problem]:

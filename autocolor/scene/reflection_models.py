@@ -26,7 +26,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from autocolor.arrays import Real, RealArray, power
-from autocolor.scene.columns import LIGHT, BarRange, Problem, Row, column_of
+from autocolor.scene.columns import BarRange, Problem, Row, Tier, column_of
 from autocolor.scene.kinds import AngleCurve, AngleCurveKind, number
 from autocolor.scene.row_kinds import nested, table_row
 
@@ -91,7 +91,7 @@ class SpecularGrowth(Row):
         at_most=1,
         bar=BarRange(0.01, 1, 0.01),
         start=0.04,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="F0: the share reflected at normal incidence; the smaller, the more S grows.",
     )
     refractive_index: float | None = number(
@@ -100,13 +100,13 @@ class SpecularGrowth(Row):
         at_most=10,
         bar=BarRange(1.1, 4, 0.01),
         start=1.5,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The refractive index, which determines F0: S grows with the angle of incidence.",
     )
     fresnel_curve: AngleCurve | None = column_of(
         AngleCurveKind(LEAST_REFLECTANCE, START_CURVE),
         default=None,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="Points [angle in degrees, reflected share]; S grows with the share.",
     )
 
@@ -171,7 +171,7 @@ class _PowerOfCosine(ReflectionModel):
         default=20.0,
         at_least=0,
         bar=BarRange(1, 200, 1),
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 100,000.",
     )
 
@@ -179,7 +179,7 @@ class _PowerOfCosine(ReflectionModel):
         SpecularGrowth,
         default=CONSTANT,
         inline=True,
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="How S grows with the angle of incidence.",
     )
 
@@ -249,7 +249,7 @@ class CookTorrance(ReflectionModel):
         at_least=0.01,
         at_most=1,
         bar=BarRange(0.01, 1, 0.01),
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.02.",
     )
     normal_reflectance: float = number(
@@ -257,7 +257,7 @@ class CookTorrance(ReflectionModel):
         at_least=0.001,
         at_most=1,
         bar=BarRange(0.01, 1, 0.01),
-        tier=LIGHT,
+        tier=Tier.LIGHT,
         help="F0: the share reflected at normal incidence.",
     )
 

@@ -17,17 +17,7 @@ import numpy as np
 
 from autocolor.checks import Vector, either
 from autocolor.errors import UsageError
-from autocolor.scene.columns import (
-    LIGHT,
-    MIX,
-    REFUSED,
-    WORLD_UNITS,
-    Problem,
-    Row,
-    column_of,
-    fields_of,
-    replaced,
-)
+from autocolor.scene.columns import REFUSED, WORLD_UNITS, Problem, Row, Tier, column_of, fields_of, replaced
 from autocolor.scene.following import light_frame, moved_vectors
 from autocolor.scene.kinds import Number, coordinates
 from autocolor.scene.lights import AXES, Flap, HalfSpace, Light, middle_between
@@ -40,9 +30,9 @@ class Rig(Row):
 
     noun: ClassVar[str] = "rig"
 
-    minimum: Vector = coordinates(tier=LIGHT, help="The smallest coordinates of the object.")
-    maximum: Vector = coordinates(tier=LIGHT, help="The largest coordinates of the object.")
-    lights: tuple[Light, ...] = column_of(RowList(Light), default=(), tier=MIX, help="The lights.")
+    minimum: Vector = coordinates(tier=Tier.LIGHT, help="The smallest coordinates of the object.")
+    maximum: Vector = coordinates(tier=Tier.LIGHT, help="The largest coordinates of the object.")
+    lights: tuple[Light, ...] = column_of(RowList(Light), default=(), tier=Tier.MIX, help="The lights.")
 
     def rules(self) -> Iterator[Problem]:
         """No coordinate of the minimum is above that of the maximum."""

@@ -16,19 +16,7 @@ from autocolor.checks import LARGEST_COORDINATE, Color, Vector, nearest, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
-from autocolor.scene.columns import (
-    ENTRIES,
-    LEVELS,
-    MIX,
-    NOTHING,
-    BarRange,
-    Kind,
-    Path,
-    Problem,
-    Row,
-    Tier,
-    column_of,
-)
+from autocolor.scene.columns import BarRange, Kind, Path, Problem, Row, Tier, column_of
 from autocolor.scene.kinds import (
     UNORDERED,
     ColorKind,
@@ -124,61 +112,66 @@ class Scalar(Row):
 
     noun: ClassVar[str] = "scalar"
 
-    name: str = text(tier=MIX, help="A scalar of the mesh, or a computed scalar such as 'mean curvature'.")
+    name: str = text(
+        tier=Tier.MIX, help="A scalar of the mesh, or a computed scalar such as 'mean curvature'."
+    )
     limits: tuple[float, float] | None = column_of(
         LimitsKind(),
         default=None,
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="The start of the first band and the end of the last; if absent, the scalar's range.",
     )
     scale: str | tuple[Color, ...] = column_of(
-        ScaleKind(), default="viridis", tier=ENTRIES, help="The color scale: a name, or a list of colors."
+        ScaleKind(),
+        default="viridis",
+        tier=Tier.ENTRIES,
+        help="The color scale: a name, or a list of colors.",
     )
     bands: int = column_of(
-        Whole(2, MOST_BANDS), default=16, bar=BarRange(2, 64, 1), tier=LEVELS, help="The number of colors."
+        Whole(2, MOST_BANDS),
+        default=16,
+        bar=BarRange(2, 64, 1),
+        tier=Tier.LEVELS,
+        help="The number of colors.",
     )
     shades: int | None = column_of(
         Whole(1, MOST_BANDS),
         default=None,
         bar=BarRange(1, 16, 1),
         start=8,
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="The levels of each color; 1 for flat color codes. If absent, as many as fit, at most 8.",
     )
     below: Color | None = column_of(
         EndColor(),
         default=None,
-        tier=ENTRIES,
+        tier=Tier.ENTRIES,
         help="The color below the limits; if absent, the color of the first band.",
     )
     above: Color | None = column_of(
         EndColor(),
         default=None,
-        tier=ENTRIES,
+        tier=Tier.ENTRIES,
         help="The color above the limits; if absent, the color of the last band.",
     )
-    missing: Color = color(
-        default=(128, 128, 128),
-        tier=ENTRIES,
-        help="The color of missing values.",
-    )
-    legend: bool = boolean(default=True, tier=NOTHING, help="Whether the display shows the legend.")
+    missing: Color = color(default=(128, 128, 128), tier=Tier.ENTRIES, help="The color of missing values.")
+    legend: bool = boolean(default=True, tier=Tier.NOTHING, help="Whether the display shows the legend.")
     legend_place: tuple[float, float] | None = column_of(
         PlaceKind(),
         default=None,
-        tier=NOTHING,
+        tier=Tier.NOTHING,
         help="The place of the legend from left to right and from top to bottom, 0 to 1; if absent, the"
         " corner where it hides least.",
     )
     surfaces: tuple[str, ...] | None = column_of(
         References("surfaces"),
         default=None,
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="The surfaces that it colors; if absent, the surfaces of all parts but stage parts.",
     )
     direction: Vector = vector(
         default=UP,
-        tier=MIX,
+        tier=Tier.MIX,
         help="The direction of distances, of the pull for draft angles, of up for slopes, or of stripes.",
     )
     stripes: float = number(
@@ -186,7 +179,7 @@ class Scalar(Row):
         at_least=1,
         at_most=1000,
         bar=BarRange(1, 60, 1),
-        tier=MIX,
+        tier=Tier.MIX,
         help="The number of zebra stripes in half a turn.",
     )
 

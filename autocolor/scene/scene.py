@@ -26,11 +26,6 @@ from autocolor.scene.changes import (
     ViewChanges,
 )
 from autocolor.scene.columns import (
-    ENTRIES,
-    FRAME,
-    LEVELS,
-    MIX,
-    NOTHING,
     REFUSED,
     BarRange,
     Problem,
@@ -76,7 +71,7 @@ SCAN_LINE: Final = "scan line"
 INVARIANT: Final = "invariant"
 INTERPOLATIONS: Final = (SCAN_LINE, INVARIANT)
 FRONTS: Final = ("x", "-x", "y", "-y")
-OF_LEVELS: Final = "levels"
+LEVELS: Final = "levels"
 NORMALS: Final = "normals"
 """The meanings of words."""
 
@@ -102,91 +97,89 @@ class Scene(Row):
     surface table. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
     """
 
-    mesh: Mesh = column_of(Instance(Mesh), tier=FRAME, help="The node table and the polygon table.")
+    mesh: Mesh = column_of(Instance(Mesh), tier=Tier.FRAME, help="The node table and the polygon table.")
     parts: tuple[Part, ...] = column_of(
-        RowList(Part, by_name=True), tier=FRAME, help="The parts, which are groups of polygons."
+        RowList(Part, by_name=True), tier=Tier.FRAME, help="The parts, which are groups of polygons."
     )
     surfaces: tuple[Surface, ...] = column_of(
-        RowList(Surface, by_name=True), tier=FRAME, help="The surface types."
+        RowList(Surface, by_name=True), tier=Tier.FRAME, help="The surface types."
     )
-    lights: tuple[Light, ...] = column_of(RowList(Light), tier=MIX, help="The lights.")
-    view: View = nested(View, tier=FRAME, help="The eye position and the view direction.")
+    lights: tuple[Light, ...] = column_of(RowList(Light), tier=Tier.MIX, help="The lights.")
+    view: View = nested(View, tier=Tier.FRAME, help="The eye position and the view direction.")
     ambient: float = number(
         default=0.1,
         at_least=0,
         bar=BarRange(0, 1, 0.01),
-        tier=MIX,
+        tier=Tier.MIX,
         help="The intensity of every point without any light.",
     )
     scaling: str = one_of(
         SCALINGS,
         default="surface",
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="Whether each surface has its own intensity range, or all surfaces share a range.",
     )
     mapping: str | CurvePoints = column_of(
-        CurveKind(CURVES), default="linear", tier=LEVELS, help="How intensities are mapped to levels."
+        CurveKind(CURVES), default="linear", tier=Tier.LEVELS, help="How intensities are mapped to levels."
     )
     contrast: str = one_of(
         CONTRASTS,
         default="stretch",
-        tier=ENTRIES,
+        tier=Tier.ENTRIES,
         help="Whether the lowest level is black, or in proportion to the minimum intensity.",
     )
     exposure: Exposure = column_of(
         RangesByName("surfaces", OBJECT, AUTO),
         default=AUTO,
         unit="intensity",
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="Whether intensity ranges are automatic, of all pixels or a percentage without the brightest, or"
         " fixed: by surface, and for all other surfaces.",
     )
     dither: str = one_of(
         DITHERS,
         default="off",
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="Whether levels are rounded, or dithered by an ordered pattern.",
     )
     division: str = one_of(
         DIVISIONS,
         default="covered",
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="Whether surfaces get more levels the more of the picture they cover, or all the same number.",
     )
     words: str = one_of(
-        (OF_LEVELS, NORMALS),
-        default=OF_LEVELS,
-        tier=LEVELS,
+        (LEVELS, NORMALS),
+        default=LEVELS,
+        tier=Tier.LEVELS,
         help="Whether words stand for levels, or for normals: lights then change entries only.",
     )
     interpolation: str = one_of(
         INTERPOLATIONS,
         default=SCAN_LINE,
-        tier=FRAME,
+        tier=Tier.FRAME,
         help="Whether quads are interpolated along scan lines, or as two triangles, unchanged as the camera"
         " rolls.",
     )
     background: Color = color(
-        default=(0, 0, 0),
-        tier=ENTRIES,
-        help="The color where nothing is visible.",
+        default=(0, 0, 0), tier=Tier.ENTRIES, help="The color where nothing is visible."
     )
     front: str | None = one_of(
         FRONTS,
         default=None,
-        tier=NOTHING,
+        tier=Tier.NOTHING,
         help="The axis toward which the object faces; it names the views from the sides.",
     )
     views: tuple[NamedView, ...] = column_of(
-        RowList(NamedView), default=(), tier=NOTHING, help="The named views, which can become the view."
+        RowList(NamedView), default=(), tier=Tier.NOTHING, help="The named views, which can become the view."
     )
     scalar: Scalar | None = nested(
-        Scalar, default=None, tier=MIX, help="The scalar that colors the surfaces, if any."
+        Scalar, default=None, tier=Tier.MIX, help="The scalar that colors the surfaces, if any."
     )
     name: str = text(
         default="scene",
         may_be_empty=True,
-        tier=NOTHING,
+        tier=Tier.NOTHING,
         help="The name of the scene, from its folder or file.",
     )
 

@@ -12,20 +12,7 @@ from typing import ClassVar, Final, Unpack
 
 from autocolor.checks import Color, listed
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
-from autocolor.scene.columns import (
-    ENTRIES,
-    FRAME,
-    LEVELS,
-    LIGHT,
-    MIX,
-    NOTHING,
-    BarRange,
-    Problem,
-    Row,
-    RowError,
-    column_of,
-    replaced,
-)
+from autocolor.scene.columns import BarRange, Problem, Row, RowError, Tier, column_of, replaced
 from autocolor.scene.kinds import ColorsKind, Whole, boolean, color, number, text
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
 from autocolor.scene.row_kinds import OneRowOf, Reference, nested, table_row
@@ -49,10 +36,10 @@ class Part(Row):
 
     noun: ClassVar[str] = "part"
 
-    name: str = text(tier=NOTHING, help="The name of the part, as in the mesh.")
-    surface: str = column_of(Reference("surfaces"), tier=FRAME, help="The name of the part's surface.")
+    name: str = text(tier=Tier.NOTHING, help="The name of the part, as in the mesh.")
+    surface: str = column_of(Reference("surfaces"), tier=Tier.FRAME, help="The name of the part's surface.")
     stage: bool = boolean(
-        default=False, tier=MIX, help="Whether the part is scenery; a new view frames the other parts."
+        default=False, tier=Tier.MIX, help="Whether the part is scenery; a new view frames the other parts."
     )
 
     def replace(self, /, **changes: Unpack[PartChanges]) -> Part:
@@ -68,13 +55,16 @@ class Reflectance(Row):
     """
 
     diffuse: float = number(
-        default=0.7, at_least=0, bar=BarRange(0, 1, 0.01), tier=MIX, help="D: the diffuse reflectance."
+        default=0.7, at_least=0, bar=BarRange(0, 1, 0.01), tier=Tier.MIX, help="D: the diffuse reflectance."
     )
     specular: float = number(
-        default=0.5, at_least=0, bar=BarRange(0, 1, 0.01), tier=MIX, help="S: the specular reflectance."
+        default=0.5, at_least=0, bar=BarRange(0, 1, 0.01), tier=Tier.MIX, help="S: the specular reflectance."
     )
     model: ReflectionModel = column_of(
-        OneRowOf(MODELS), default=PHONG, tier=LIGHT, help="The reflection model of the specular highlight."
+        OneRowOf(MODELS),
+        default=PHONG,
+        tier=Tier.LIGHT,
+        help="The reflection model of the specular highlight.",
     )
 
     def __init__(
@@ -126,12 +116,10 @@ class Paint(Row):
     )
 
     object_color: Color = color(
-        default=(176, 176, 176),
-        tier=ENTRIES,
-        help="The color of diffuse reflection.",
+        default=(176, 176, 176), tier=Tier.ENTRIES, help="The color of diffuse reflection."
     )
     light_color: Color = color(
-        default=(255, 255, 255), tier=ENTRIES, help="The color of the light source, shown in highlights."
+        default=(255, 255, 255), tier=Tier.ENTRIES, help="The color of the light source, shown in highlights."
     )
     blend: float = number(
         default=0.6,
@@ -139,7 +127,7 @@ class Paint(Row):
         at_most=1,
         unit="fraction of the range of levels",
         bar=BarRange(0, 1, 0.01),
-        tier=ENTRIES,
+        tier=Tier.ENTRIES,
         help="The level above which the light color blends in; 1 for no blending.",
     )
     light_percentage: float = number(
@@ -148,13 +136,13 @@ class Paint(Row):
         at_most=100,
         unit="percent",
         bar=BarRange(0, 100, 1),
-        tier=ENTRIES,
+        tier=Tier.ENTRIES,
         help="The share of the light color at the highest level.",
     )
     ramp: tuple[Color, ...] | None = column_of(
         ColorsKind(MOST_RAMP_COLORS),
         default=None,
-        tier=ENTRIES,
+        tier=Tier.ENTRIES,
         help="Colors at equal distances from the lowest level to the highest; excludes the two colors and"
         " their blend.",
     )
@@ -194,26 +182,32 @@ class Surface(Row):
 
     noun: ClassVar[str] = "surface"
 
-    name: str = text(tier=MIX, help="The name of the surface, which must be unique.")
+    name: str = text(tier=Tier.MIX, help="The name of the surface, which must be unique.")
     reflectance: Reflectance = nested(
-        Reflectance, default=Reflectance(), inline=True, tier=LIGHT, help="How the surface reflects light."
+        Reflectance,
+        default=Reflectance(),
+        inline=True,
+        tier=Tier.LIGHT,
+        help="How the surface reflects light.",
     )
     paint: Paint = nested(
         Paint,
         default=Paint(),
         inline=True,
-        tier=ENTRIES,
+        tier=Tier.ENTRIES,
         help="The colors of the surface, and how they blend.",
     )
     two_sided: bool = boolean(
-        default=True, tier=FRAME, help="Whether normals of polygons seen from behind are turned to the eye."
+        default=True,
+        tier=Tier.FRAME,
+        help="Whether normals of polygons seen from behind are turned to the eye.",
     )
     levels: int | None = column_of(
         Whole(2, MOST_LEVELS),
         default=None,
         bar=BarRange(2, 256, 1),
         start=64,
-        tier=LEVELS,
+        tier=Tier.LEVELS,
         help="The number of lookup table entries; if absent, a share of the remaining entries.",
     )
 

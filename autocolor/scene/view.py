@@ -16,7 +16,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.scene.changes import NamedViewChanges, ViewChanges
-from autocolor.scene.columns import FRAME, NOTHING, BarRange, Problem, Row, replaced
+from autocolor.scene.columns import BarRange, Problem, Row, Tier, replaced
 from autocolor.scene.kinds import coordinates, number, text, vector
 from autocolor.scene.row_kinds import nested, table_row
 
@@ -67,18 +67,18 @@ class View(Row):
     noun: ClassVar[str] = "view"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("target",))
 
-    eye: Vector = coordinates(tier=FRAME, help="The position of the eye.")
+    eye: Vector = coordinates(tier=Tier.FRAME, help="The position of the eye.")
     direction: Vector | None = vector(
-        default=None, tier=FRAME, help="The view direction, of any length; excludes a target."
+        default=None, tier=Tier.FRAME, help="The view direction, of any length; excludes a target."
     )
     target: Vector | None = coordinates(
-        default=None, tier=FRAME, help="The point that the eye looks at; excludes a direction."
+        default=None, tier=Tier.FRAME, help="The point that the eye looks at; excludes a direction."
     )
     angle: float = number(
         default=0.0,
         unit="degrees",
         bar=BarRange(-180, 180, 1),
-        tier=FRAME,
+        tier=Tier.FRAME,
         help="The rotation of the horizontal axis of the picture plane.",
     )
     field_of_view: float = number(
@@ -87,7 +87,7 @@ class View(Row):
         at_most=179,
         unit="degrees",
         bar=BarRange(5, 120, 1),
-        tier=FRAME,
+        tier=Tier.FRAME,
         help="The vertical field of view of a picture of 4:3 or wider; a narrower picture has the horizontal"
         " field of view of 4:3.",
     )
@@ -203,8 +203,8 @@ class NamedView(Row):
 
     noun: ClassVar[str] = "named view"
 
-    name: str = text(tier=NOTHING, help="The name, unique among the named views.")
-    view: View = nested(View, inline=True, tier=NOTHING, help="The view.")
+    name: str = text(tier=Tier.NOTHING, help="The name, unique among the named views.")
+    view: View = nested(View, inline=True, tier=Tier.NOTHING, help="The view.")
 
     def replace(self, /, **changes: Unpack[NamedViewChanges]) -> NamedView:
         """The named view with some fields changed, also fields of its view."""

@@ -31,7 +31,7 @@ from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.columns import fields_of
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scene import AUTO, OF_LEVELS, Scene, unset_paints
+from autocolor.scene.scene import AUTO, LEVELS, Scene, unset_paints
 from autocolor.scene.surfaces import Paint, Part, Surface
 from autocolor.scene.swatches import finished
 from autocolor.scene.view import View
@@ -802,7 +802,7 @@ def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
     alone = scene.replace(
         lights=[light.replace(on=light.name in names, intensity=1) for light in scene.lights],
         ambient=0,
-        words=OF_LEVELS,
+        words=LEVELS,
         exposure=AUTO,
     )
     if not studio.image_of(alone).picture.ranges.whole.maximum:

@@ -22,7 +22,7 @@ from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import free_path, path_within
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
 from autocolor.files.writing import write_atomically
-from autocolor.scene.columns import FRAME, BarRange, Problem, Row, RowError, column_of, from_plain, keys_of
+from autocolor.scene.columns import BarRange, Problem, Row, RowError, Tier, column_of, from_plain, keys_of
 from autocolor.scene.kinds import one_of, text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
 from autocolor.scene.row_kinds import table_row
@@ -42,26 +42,29 @@ class MeshEntry(Row):
 
     noun: ClassVar[str] = "mesh"
 
-    file: str | None = text(default=None, tier=FRAME, help="A mesh file in the scene's folder.")
-    nodes: str | None = text(default=None, tier=FRAME, help="A node table, with a polygon table.")
-    polygons: str | None = text(default=None, tier=FRAME, help="The polygon table.")
-    up: str = one_of(UPS, default="z", tier=FRAME, help="The file's up axis; the world's is z.")
+    file: str | None = text(default=None, tier=Tier.FRAME, help="A mesh file in the scene's folder.")
+    nodes: str | None = text(default=None, tier=Tier.FRAME, help="A node table, with a polygon table.")
+    polygons: str | None = text(default=None, tier=Tier.FRAME, help="The polygon table.")
+    up: str = one_of(UPS, default="z", tier=Tier.FRAME, help="The file's up axis; the world's is z.")
     scale: float = column_of(
         SCALES,
         default=1.0,
         bar=BarRange(0.01, 10, 0.01),
-        tier=FRAME,
+        tier=Tier.FRAME,
         help="A factor for the coordinates of the file.",
     )
     normals: str = one_of(
-        NORMALS, default=COMPUTED, tier=FRAME, help="Whose normals are used: computed, or the file's own."
+        NORMALS,
+        default=COMPUTED,
+        tier=Tier.FRAME,
+        help="Whose normals are used: computed, or the file's own.",
     )
     crease_angle: float | None = column_of(
         CREASE_ANGLES,
         default=None,
         unit="degrees",
         bar=BarRange(0, 180, 1),
-        tier=FRAME,
+        tier=Tier.FRAME,
         help="Polygons that meet at a larger angle keep a sharp edge; the same for all meshes.",
     )
 
