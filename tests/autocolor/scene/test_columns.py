@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import pickle
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -117,6 +118,8 @@ def test_giving_one_alternative_drops_the_others() -> None:
     assert replaced(span, {"end": None}) == Span("a", 1)
     assert span == from_plain(Span, {"name": "a", "begin": 1, "end": 2.0})
     assert difference(span, Span("b", 1)) == {"name": "b", "end": None}
+    # Without the key, a limit would stay.
+    assert difference(Flap(1, 2), Flap(1)) == {"maximum": math.inf}
 
 
 def test_a_change_keeps_nothing_that_was_computed_of_the_row() -> None:

@@ -138,6 +138,10 @@ test_a_row_inside_a_row_is_refused_with_the_keys_that_lead_there = refused(
             lambda: replaced(Box("a"), {"model": Rounder()}),
             "box 'a': model must be 'round' or 'square', not Rounder()",
         ),
+        (
+            lambda: replaced(Box("a"), {"model": {"radus": 3}}),
+            "box 'a': there is no field 'radus'; did you mean 'radius'?",
+        ),
         (lambda: replaced(Box("a"), {"shape": 3}), "box 'a': shape must be a Shape, not 3"),
         (
             lambda: replaced(Box("a"), {"shape": None, "weight": 1}),
