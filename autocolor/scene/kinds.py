@@ -344,8 +344,14 @@ class ColorKind(Kind[Color]):
         red, green, blue = map(int, given)
         return red, green, blue
 
-    def advice(self, value: object) -> str:
-        return _advice_on_text(value) if isinstance(value, str) else "; write them as in [176, 16, 32]"
+    def advice(self, value: Any) -> str:
+        if isinstance(value, str):
+            return _advice_on_text(value)
+        try:
+            # Most programs write fractions.
+            return f"; write {list(self.accepted([int(255 * part + 0.5) for part in value]))}"
+        except (TypeError, ValueError, OverflowError):
+            return ""
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: in_digits(value)}

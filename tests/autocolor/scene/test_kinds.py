@@ -131,7 +131,9 @@ SENTENCES: list[tuple[tuple[Kind[Any], Any], str]] = [
             ("rgba(1, 2, 3, 256)", "; keep its parts from 0 to 255, or from 0% to 100%"),
             ("rgb(300, 0, 0)", "; keep its parts from 0 to 255, or from 0% to 100%"),
             ("hsl(0, 200%, 50%)", "; keep its parts from 0 to 255, or from 0% to 100%"),
-            ((1.0, 0, 0), "; write them as in [176, 16, 32]"),
+            ((1.0, 0, 0), "; write [255, 0, 0]"),
+            ((0.5, 0.25, 0), "; write [128, 64, 0]"),
+            ((10.0, 16.0, 255.0), ""),
         )
     ),
 ]
