@@ -13,9 +13,10 @@ from typing import Any
 
 import pytest
 
+import autocolor
 from autocolor import errors
 from autocolor.files.store.schema import DEFINITIONS, ROW_TABLES
-from autocolor.scene.columns import Row, keys_of
+from autocolor.scene.columns import Row, fields_of, keys_of
 from autocolor.screens.viewer import BINDINGS, WINDOW_KEYS
 from docs.generate import changes, columns, commands, fidelity, keys, store
 from docs.generate.notebook import CODE, MARKDOWN, NOTEBOOK, Cell, cells_of, notebook, outputs_of
@@ -52,8 +53,24 @@ def test_a_document_is_up_to_date(path: str, document: Callable[[], str]) -> Non
 @pytest.mark.parametrize(("title", "text", "cls"), columns.TABLES)
 def test_every_key_of_a_table_has_a_line_with_its_help(title: str, text: str, cls: type[Row]) -> None:
     lines = "\n".join(columns.lines_of(title, text, cls))
-    for key, (column, _, _) in keys_of(cls).items():
+    for key, (column, _) in keys_of(cls).items():
         assert (f"| `{key}` | {column.help}" in lines) == (key not in columns.LEFT_OUT.get(cls, ()))
+
+
+def test_the_page_of_python_gives_every_keyword_of_a_row_with_its_help() -> None:
+    griffe = pytest.importorskip("griffe", reason="griffe comes with autocolor[docs]")
+    from docs.generate.keywords import Keywords
+
+    package = griffe.load("autocolor", extensions=griffe.load_extensions(Keywords))
+    names = re.findall(r"^::: autocolor\.(\w+)$", (ROOT / "docs" / "api.md").read_text("utf-8"), re.MULTILINE)
+    classes = [each for name in names if isinstance(each := getattr(autocolor, name), type)]
+    rows = [cls for cls in classes if issubclass(cls, Row)]
+    assert len(rows) > 10
+    for cls in rows:
+        page = package[f"{cls.__module__.removeprefix('autocolor.')}.{cls.__name__}"]
+        for name, column in fields_of(cls).items():
+            assert f"| `{name}` | {column.help}" in page.docstring.value
+            assert name in page.parameters
 
 
 def test_every_exit_code_of_an_error_has_a_meaning_and_nearly_all_a_command() -> None:

@@ -214,5 +214,5 @@ def _check_entries_alone(
     by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
     raise InputError(
         "a frame of a stream must change entries of the lookup table alone, and an edit of"
-        f" {brief(key)} computes {tier.computed} again; write a film such as .webp{by_normals}"
+        f" {brief(key)} changes words; write a film such as .webp{by_normals}"
     )

@@ -185,7 +185,7 @@ class _Track:
                 is_unset = field.is_optional and value_at(self.scene, place) is not None
                 settings |= {key: None} if is_unset else {}
             else:
-                kind, name = field.column.kind, place.path[-1]
+                kind, name = field.kind, place.path[-1]
                 plain = kind.to_plain(name, value)
                 stem = key.removesuffix(name)
                 # The name of a reflection model comes with the parameters of the model.

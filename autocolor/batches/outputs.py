@@ -109,7 +109,7 @@ def _own_text(scene: Scene, key: str) -> str:
         place = place_of(scene, key)
         if (field := field_of(place)) is not None:
             value, name = value_at(scene, place), place.path[-1]
-            plain = {} if value is None else field.column.kind.to_plain(name, value)
+            plain = {} if value is None else field.kind.to_plain(name, value)
             return _safe(stem_of(plain.get(name)))
     close = nearest(key, (NUMBER, NAME))
     raise UsageError(f"a field of a name pattern must be a key of the scene, not {shown(key)}{close}")
@@ -256,7 +256,7 @@ def base_mark(scene: Scene, picture: Picture | None, drawn: tuple[object, ...]) 
     """
     plain = plain_scene(scene)
     for name, field in fields_of(Scene).items():
-        if field.column.tier is Tier.NOTHING:
+        if field.tier is Tier.NOTHING:
             plain.pop(name, None)
     mesh = scene.mesh
     arrays: list[Any] = [mesh.coordinates, mesh.node_numbers, mesh.part_numbers]

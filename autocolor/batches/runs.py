@@ -213,4 +213,4 @@ def tier_of(scene: Scene, key: str) -> Tier:
         field = field_of(place_of(scene, key))
     except UsageError:
         return Tier.NOTHING
-    return Tier.NOTHING if field is None else field.column.tier
+    return Tier.NOTHING if field is None else field.tier

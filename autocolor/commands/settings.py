@@ -80,7 +80,7 @@ def keys_after(scene: Scene, start: str) -> list[str]:
         return _fields_after(start, kind.row_class)
     place = place_of(scene, start[:-1])
     field = field_of(place)
-    inner = None if field is None else field.column.kind
+    inner = None if field is None else field.kind
     if isinstance(inner, NamedRows):
         present = vars(row_at(scene, place))[place.path[0]]
         return [f"{start}{row.name}." for row in present]
@@ -94,8 +94,8 @@ def _fields_after(start: str, cls: type[Row], row: Row | None = None) -> list[st
         field = field_and_value(cls, None, (key,))[0]
         if field is None or (key == "name" and cls is not Scalar):
             continue
-        has_rows = isinstance(field.column.kind, NamedRows) and row is not None and bool(vars(row)[key])
-        keys.append(f"{start}{key}{'.' if has_rows or isinstance(field.column.kind, Nested) else '='}")
+        has_rows = isinstance(field.kind, NamedRows) and row is not None and bool(vars(row)[key])
+        keys.append(f"{start}{key}{'.' if has_rows or isinstance(field.kind, Nested) else '='}")
     return keys
 
 
@@ -105,7 +105,7 @@ def _values(scene: Scene, key: str) -> list[str]:
     field = field_of(place)
     if field is None:
         return []
-    kind = field.column.kind
+    kind = field.kind
     if isinstance(kind, OneOf):
         return list(kind.names)
     if isinstance(kind, OneRowOf):
@@ -122,5 +122,5 @@ def _values(scene: Scene, key: str) -> list[str]:
         value = value.get(part) if isinstance(value, dict) else None
     if isinstance(value, bool):
         return ["true", "false"]
-    present = [] if value is None or isinstance(value, (dict, list)) else [str(value)]
+    present = [] if value is None or isinstance(value, (dict, list, tuple)) else [str(value)]
     return [*present, *color_names()] if isinstance(kind, ColorKind) else present

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from autocolor.budget import allowing
 from autocolor.checks import shown
@@ -137,7 +137,7 @@ def read_scene_with_report(
     surfaces: SurfaceSource = MATERIALS,
 ) -> SceneReport:
     """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
-    kinds: tuple[Kind, ...] = (OneOf(UPS), SCALES, OneOf((MATERIALS, PARTS)))
+    kinds: tuple[Kind[Any], ...] = (OneOf(UPS), SCALES, OneOf((MATERIALS, PARTS)))
     for name, kind, value in zip(("up", "scale", "surfaces"), kinds, (up, scale, surfaces), strict=True):
         if kind.validated(value, (), []) is REFUSED:
             raise UsageError(f"{name} {kind.rule()}, not {shown(value)}; choose another")

@@ -15,11 +15,7 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Surface
 
-OMITTED: Final = {
-    name: field.default()
-    for name, field in fields_of(Scene).items()
-    if name in MAPPING_FIELDS and field.default is not None
-}
+OMITTED: Final = {name: field.default for name, field in fields_of(Scene).items() if name in MAPPING_FIELDS}
 """The values of omitted keys that are created for a bare mesh."""
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 from autocolor.checks import brief, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.text_table import value_of_text
-from autocolor.scene.columns import REFUSED, Column, Field, Kind, Row, fields_of, keys_of
+from autocolor.scene.columns import MISSING, REFUSED, Column, Kind, Row, fields_of, keys_of
 from autocolor.scene.kinds import Instance, Text
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, RowList
 from autocolor.scene.scene import Scene
@@ -62,12 +62,12 @@ def scene_with(scene: Scene, settings: Mapping[str, object]) -> Scene:
     return scene
 
 
-def _value_for(field: Field | None, key: str, value: object) -> object:
+def _value_for(field: Column | None, key: str, value: object) -> object:
     """The value for a field. Raises UsageError if it unsets a field that must have a value."""
     text = value if isinstance(value, str) else None
     if field is None:
         return value if text is None else value_of_text(text)
-    kind = field.column.kind
+    kind = field.kind
     is_value = value is not None
     if text is not None and text.lower() == UNSET:
         # A choice, or a name, may be "none".
@@ -83,11 +83,10 @@ def _value_for(field: Field | None, key: str, value: object) -> object:
         return text if isinstance(kind, (Reference, Text)) and not isinstance(parsed, str) else parsed
     if is_value or field.is_optional:
         return value if is_value else None
-    default = None if field.default is None else field.default()
     # The default unsets a field if scene files leave it out: no limit of a flap, no flaps.
-    if default is None or kind.to_plain(key, default).get(key) not in (None, {}):
+    if field.default is MISSING or kind.to_plain(key, field.default).get(key) not in (None, {}):
         raise UsageError(f"{brief(key)}: it {kind.rule()}, not none; only an optional field can be unset")
-    return default
+    return field.default
 
 
 class SettingPlace(NamedTuple):
@@ -120,9 +119,9 @@ def place_of(scene: Scene, key: str) -> SettingPlace:
     first, _, rest = field.partition(".")
     inner = fields_of(type(rows[name])).get(first) if name in rows else None
     path = field.split(".")
-    if rest and inner is not None and isinstance(inner.column.kind, NamedRows):
+    if rest and inner is not None and isinstance(inner.kind, NamedRows):
         names = [row.name for row in vars(rows[name])[first]]
-        inner_name, rest = _name_and_rest(rest, names, key, inner.column.kind.row_class)
+        inner_name, rest = _name_and_rest(rest, names, key, inner.kind.row_class)
         path = [first, inner_name, *(rest.split(".") if rest else ())]
     if rows and path[-1] == "name":
         raise UsageError(f"{key}: a name cannot be set; change it in the scene file")
@@ -148,7 +147,7 @@ def _name_and_rest(text: str, names: Iterable[str], key: str, cls: type[Row]) ->
     return wrong, ""
 
 
-def field_of(place: SettingPlace) -> Field | None:
+def field_of(place: SettingPlace) -> Column | None:
     """The field at a place; None if its row has no such field."""
     return field_and_value(_class_of(place), None, place.path)[0]
 
@@ -159,19 +158,19 @@ def _class_of(place: SettingPlace) -> type[Row]:
     return kind.row_class if isinstance(kind, (Nested, RowList)) else Scene
 
 
-def settable_kinds() -> Mapping[str, Kind]:
+def settable_kinds() -> Mapping[str, Kind[Any]]:
     """The kinds of the fields of a scene that have keys, by name."""
-    kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}
+    kinds = {name: field.kind for name, field in fields_of(Scene).items() if name != "name"}
     return {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
 
 
-def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Field | None, Any]:
+def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Column | None, Any]:
     """The field at a path of keys in a row of a class, and its value; None for what is absent."""
     key = keys_of(cls).get(path[0])
     if key is None:
         return None, None
     field = fields_of(cls)[key.field]
-    kind = field.column.kind
+    kind = field.kind
     value = None if row is None else vars(row)[key.field]
     if isinstance(kind, OneRowOf) and path[0] != key.field:
         owners = [inner for inner in kind.classes.values() if path[0] in keys_of(inner)]
@@ -186,7 +185,7 @@ def field_and_value(cls: type[Row], row: Any, path: Sequence[str]) -> tuple[Fiel
         if len(path) > 2:
             return field_and_value(kind.row_class, inner, path[2:])
         # The row itself is optional.
-        return Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None), inner
+        return Column(Nested(kind.row_class), field.tier, field.help, default=None), inner
     return field_and_value(kind.row_class, value, path[1:]) if isinstance(kind, Nested) else (None, None)
 
 

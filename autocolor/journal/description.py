@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any, Final, NamedTuple
 
-from autocolor.scene.columns import Kind, Row, fields_of, reset_fields
+from autocolor.scene.columns import MISSING, Kind, Row, fields_of, reset_fields
 from autocolor.scene.kinds import ColorKind, ColorsKind, VectorKind, in_digits
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, RowList
 from autocolor.scene.scene import Scene
@@ -112,7 +112,7 @@ def _changed_rows(before: Scene, after: Scene) -> Iterator[RowChange]:
     """The rows that differ, in the order of the tables, and then the columns of the scene itself."""
     own: list[ColumnChange] = []
     for name, field in fields_of(Scene).items():
-        one, other, kind = vars(before)[name], vars(after)[name], field.column.kind
+        one, other, kind = vars(before)[name], vars(after)[name], field.kind
         if name == "mesh" or one is other or one == other:
             continue
         if isinstance(kind, RowList):
@@ -160,19 +160,19 @@ def _changes(before: Row | None, after: Row, path: str = "") -> Iterator[ColumnC
     for name, field in fields_of(type(after)).items():
         if name in resets and vars(after)[name] is not None:
             continue
-        other, kind = vars(after)[name], field.column.kind
+        other, kind = vars(after)[name], field.kind
         if before is not None:
             one = vars(before)[name]
-        elif field.default is None:
-            one = None
         else:
-            one = field.default()
+            one = None if field.default is MISSING else field.default
         if one is other or one == other:
             continue
         yield from _changes_of_value(f"{path}{_words(name)}", kind, one, other, path)
 
 
-def _changes_of_value(label: str, kind: Kind, one: Any, other: Any, path: str = "") -> Iterator[ColumnChange]:
+def _changes_of_value(
+    label: str, kind: Kind[Any], one: Any, other: Any, path: str = ""
+) -> Iterator[ColumnChange]:
     """The changes of a column from one value to another; `path` stands before the columns of inline rows."""
     label = _words(label)
     if isinstance(kind, Nested):
@@ -208,7 +208,7 @@ def _changes_of_value(label: str, kind: Kind, one: Any, other: Any, path: str = 
         yield ColumnChange(label, _arrow(kind, one, other))
 
 
-def _arrow(kind: Kind, one: Any, other: Any) -> str:
+def _arrow(kind: Kind[Any], one: Any, other: Any) -> str:
     """Two values with an arrow between them; colors or another long value alone; empty for a list."""
     if isinstance(one, (int, float)) and isinstance(other, (int, float)):
         texts: Sequence[str] = _numbers(one, other)
@@ -217,7 +217,7 @@ def _arrow(kind: Kind, one: Any, other: Any) -> str:
     return " -> ".join(texts) if all(texts) and not isinstance(kind, (ColorKind, ColorsKind)) else texts[1]
 
 
-def _text(kind: Kind, value: Any) -> str:
+def _text(kind: Kind[Any], value: Any) -> str:
     """A value as short text; empty for a list, except a list of colors."""
     if value is None:
         return "none"

@@ -1,6 +1,7 @@
-"""What a change of a row may say: its keys and their types, for editors and type checkers.
+"""The keys of a change of a row, and the types of their values, for editors and type checkers.
 
-Written by `python -m docs.generate.changes` from the columns; do not edit it by hand.
+The keys of an inline row, such as the paint of a surface, are those of its own changes. Written by
+`python -m docs.generate.changes` from the columns; do not edit it by hand.
 """
 
 from __future__ import annotations
@@ -12,8 +13,6 @@ from autocolor.scene.columns import Row
 
 
 class FlapChanges(TypedDict, total=False):
-    """Changes of a Flap."""
-
     minimum: float
     maximum: float
     on: bool
@@ -21,16 +20,12 @@ class FlapChanges(TypedDict, total=False):
 
 
 class FlapsChanges(TypedDict, total=False):
-    """Changes of a Flaps."""
-
     x: Row | FlapChanges | None
     y: Row | FlapChanges | None
     z: Row | FlapChanges | None
 
 
 class HalfSpaceChanges(TypedDict, total=False):
-    """Changes of a HalfSpace."""
-
     name: str
     point: Sequence[float]
     direction: Sequence[float]
@@ -40,17 +35,13 @@ class HalfSpaceChanges(TypedDict, total=False):
 
 
 class LinksChanges(TypedDict, total=False):
-    """Changes of a Links."""
-
     only_surfaces: Sequence[str] | None
     except_surfaces: Sequence[str] | None
     only_parts: Sequence[str] | None
     except_parts: Sequence[str] | None
 
 
-class LightChanges(TypedDict, total=False):
-    """Changes of a Light."""
-
+class LightChanges(LinksChanges, total=False):
     name: str
     position: Sequence[float]
     intensity: float
@@ -67,23 +58,15 @@ class LightChanges(TypedDict, total=False):
     at_infinity: bool
     follows: str | None
     links: Row | LinksChanges
-    only_surfaces: Sequence[str] | None
-    except_surfaces: Sequence[str] | None
-    only_parts: Sequence[str] | None
-    except_parts: Sequence[str] | None
 
 
 class PartChanges(TypedDict, total=False):
-    """Changes of a Part."""
-
     name: str
     surface: str
     stage: bool
 
 
 class ReflectanceChanges(TypedDict, total=False):
-    """Changes of a Reflectance."""
-
     diffuse: float
     specular: float
     model: str | Row
@@ -96,8 +79,6 @@ class ReflectanceChanges(TypedDict, total=False):
 
 
 class PaintChanges(TypedDict, total=False):
-    """Changes of a Paint."""
-
     object_color: str | Sequence[int]
     light_color: str | Sequence[int]
     blend: float
@@ -105,33 +86,15 @@ class PaintChanges(TypedDict, total=False):
     ramp: str | Sequence[str | Sequence[int]] | None
 
 
-class SurfaceChanges(TypedDict, total=False):
-    """Changes of a Surface."""
-
+class SurfaceChanges(ReflectanceChanges, PaintChanges, total=False):
     name: str
     reflectance: Row | ReflectanceChanges
     paint: Row | PaintChanges
     two_sided: bool
     levels: int | None
-    diffuse: float
-    specular: float
-    model: str | Row
-    exponent: float
-    base_reflectance: float | None
-    refractive_index: float | None
-    fresnel_curve: Sequence[Sequence[float]] | None
-    roughness: float
-    normal_reflectance: float
-    object_color: str | Sequence[int]
-    light_color: str | Sequence[int]
-    blend: float
-    light_percentage: float
-    ramp: str | Sequence[str | Sequence[int]] | None
 
 
 class ViewChanges(TypedDict, total=False):
-    """Changes of a View."""
-
     eye: Sequence[float]
     direction: Sequence[float] | None
     target: Sequence[float] | None
@@ -139,21 +102,12 @@ class ViewChanges(TypedDict, total=False):
     field_of_view: float
 
 
-class NamedViewChanges(TypedDict, total=False):
-    """Changes of a NamedView."""
-
+class NamedViewChanges(ViewChanges, total=False):
     name: str
     view: Row | ViewChanges
-    eye: Sequence[float]
-    direction: Sequence[float] | None
-    target: Sequence[float] | None
-    angle: float
-    field_of_view: float
 
 
 class ScalarChanges(TypedDict, total=False):
-    """Changes of a Scalar."""
-
     name: str
     limits: Sequence[float] | None
     scale: str | Sequence[str | Sequence[int]]
@@ -170,8 +124,6 @@ class ScalarChanges(TypedDict, total=False):
 
 
 class SceneFields(TypedDict, total=False):
-    """Fields of a Scene besides its mesh, parts and surfaces."""
-
     lights: Sequence[Row]
     view: Row | ViewChanges
     ambient: float
@@ -191,8 +143,6 @@ class SceneFields(TypedDict, total=False):
 
 
 class SceneChanges(SceneFields, total=False):
-    """Changes of a Scene."""
-
     mesh: object
     parts: Sequence[Row]
     surfaces: Sequence[Row]

@@ -1,17 +1,17 @@
-"""Columns: the description of each field of a table, given once, at the field of its dataclass.
+"""Columns: the description of each field of a table, given once, at the field of its row class.
 
-    @dataclass(frozen=True, repr=False)
+    @table_row
     class Light(Row):
         noun: ClassVar[str] = "light"
 
-        concentration: Annotated[
-            float, Column(Number(at_least=0), Tier.LIGHT, "How narrow the light is.")
-        ] = 0.0
+        concentration: float = number(
+            default=0.0, at_least=0, tier=Tier.LIGHT, help="How narrow the light is."
+        )
 
 The checks at construction, scene files, `--set`, `--json`, the table store, the journal, menus and documents
-are made from it. A row of a table is a frozen dataclass that derives from `Row`. `replaced`, `from_plain`,
-`to_plain`, `difference` and `cost` work for any row. The `Kind` of a column says which values it may have:
-see `kinds` for values without fields and `row_kinds` for rows inside rows.
+are made from it. A row of a table is a frozen dataclass that derives from `Row`; `row_kinds.table_row` makes
+it. `replaced`, `from_plain`, `to_plain`, `difference` and `cost` work for any row. The `Kind` of a column
+says which values it may have: see `kinds` for values without fields and `row_kinds` for rows inside rows.
 
 A key is the name of a column in a file, and usually the name of its field. The field of an `inline` row has
 no key: the file writes the keys of that row among the keys of the containing row.
@@ -24,9 +24,10 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import IntEnum
-from functools import cache, partial
-from typing import Any, ClassVar, Final, NamedTuple, Self, TypeVar, cast, get_type_hints
+from functools import cache
+from typing import Any, ClassVar, Final, Generic, NamedTuple, Required, Self, TypedDict, TypeVar, Unpack, cast
 
+from autocolor.arrays import half_up
 from autocolor.checks import listed, nearest, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable
@@ -34,73 +35,82 @@ from autocolor.immutable import Immutable
 WORLD_UNITS: Final = "world units"
 """The unit of coordinates and lengths. Their usual range is the object's; they have no bar."""
 
+MISSING: Final[Any] = dataclasses.MISSING
+"""The default of a column that must be given."""
+
+Value = TypeVar("Value")
+Default = TypeVar("Default")
+
 
 @dataclasses.dataclass(frozen=True)
 class Column:
-    """A column: its kind, the cost of an edit, a line of help, and its unit.
+    """A column: its kind, the cost of an edit, a line of help, its unit and its default.
 
-    `bar` is the usual range and the step, unless the limits of the kind give them (see `bar_of`). `start` is
-    the first value of an absent number that is switched on.
+    `bar` is the usual range and the step, None for a column without a usual range. `start` is the first value
+    of an absent number that is switched on.
     """
 
-    kind: Kind
+    kind: Kind[Any]
     tier: Tier
     help: str
     unit: str = ""
     bar: BarRange | None = None
     start: float | None = None
+    default: Any = dataclasses.field(default_factory=lambda: MISSING)
+
+    @property
+    def is_optional(self) -> bool:
+        """Whether the value may be None."""
+        return self.default is None
+
+
+class About(TypedDict, Generic[Default], total=False):
+    """The keywords of any field: those of `Column` besides the kind."""
+
+    tier: Required[Tier]
+    help: Required[str]
+    unit: str
+    bar: BarRange
+    start: float
+    default: Default
+
+
+def column_of(kind: Kind[Value], **about: Unpack[About[Default]]) -> Value | Default:
+    """A field of a row class whose values are of a kind.
+
+    Type checkers see the type of its values, with that of its default.
+    """
+    made = Column(kind, **about)
+    return cast("Value | Default", dataclasses.field(default=made.default, metadata={"column": made}))
 
 
 class Tier(IntEnum):
-    """What an edit of a column costs, in increasing order.
+    """What an edit of a column costs, in increasing order; each computes again all that a lower one does."""
 
-    `computed` names what the edit computes again; every lower tier follows. `sent` names what it sends to the
-    display.
-    """
-
-    NOTHING = 0, "nothing", "nothing"
-    ENTRIES = 1, "entries of the lookup table", "those entries, no word"
-    LEVELS = 2, "the levels", "all words, the entries that differ"
-    MIX = 3, "the weighted sum of the lights", "all words, the entries that differ"
-    LIGHT = 4, "one light, or all lights on one surface", "all words, the entries that differ"
-    FRAME = 5, "everything", "all words, the entries that differ"
-
-    computed: str
-    sent: str
-
-    def __new__(cls, value: int, computed: str, sent: str) -> Tier:
-        """A member: a number with two phrases."""
-        tier = int.__new__(cls, value)
-        tier._value_ = value
-        tier.computed, tier.sent = computed, sent
-        return tier
+    NOTHING = 0
+    ENTRIES = 1
+    LEVELS = 2
+    MIX = 3
+    LIGHT = 4
+    FRAME = 5
 
 
 Path = tuple[str | int, ...]
 """The keys and row numbers that lead from a row to a value inside it."""
 
 
-class Kind:
+class Kind(Generic[Value]):
     """The kind of values in a column: how they are checked, replaced, written and compared.
 
-    A kind of values without fields defines `rule`, `accepts` and `accepted`, and may define `advice`. A kind
-    of rows defines `validated` instead of `accepted`.
+    A kind of values without fields defines `rule` and `accepted`, and may define `advice`. A kind of rows
+    defines `validated` instead of `accepted`.
     """
-
-    @property
-    def has_keys_inside(self) -> bool:
-        """Whether keys of the containing row can refer to fields inside the value."""
-        return False
 
     def rule(self) -> str:
         """The rule for a value, as part of a message: "must be true or false"."""
         raise NotImplementedError
 
-    def accepts(self) -> str:
-        """The type annotation of accepted values, as written in `changes.py`."""
-        raise NotImplementedError
-
-    def accepted(self, value: Any) -> Any:
+    def accepted(self, value: Any) -> Value:
         """The converted value. Raises TypeError, ValueError or OverflowError if it breaks the rule."""
         raise NotImplementedError
 
@@ -108,13 +118,12 @@ class Kind:
         """The end of the message about an invalid value, which says how to correct it."""
         return ""
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         """The value converted for the row; REFUSED, with its problems appended, if it is invalid."""
         try:
             return self.accepted(value)
         except (TypeError, ValueError, OverflowError):
-            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}{self.advice(value)}"))
-            return REFUSED
+            return refused(problems, path, f"{self.rule()}, not {shown(value)}{self.advice(value)}")
 
     def keys(self, name: str, column: Column) -> Mapping[str, Column]:
         """The keys in a file, with their columns, for a field of this name."""
@@ -129,35 +138,50 @@ class Kind:
         return {name: value}
 
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
-        """The keys and values that turn a field of this name from one value to another, neither None."""
-        return {} if repr(one) == repr(other) else self.to_plain(name, other)
+        """The keys and values that turn a field of this name from one value to another, neither None.
 
-    def bar(self) -> BarRange | None:
-        """The bar of the kind's own limits; None unless it has numbers with two limits."""
-        return None
+        An infinite value, which is not written, is given too: without the key it would not change.
+        """
+        plain = {} if repr(one) == repr(other) else self.to_plain(name, other)
+        return {key: other if value is None else value for key, value in plain.items()}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        """The cost of an edit from one value to another; None if equal. `own` is the tier of the column."""
+        """The cost of an edit from one value to another; None if equal. `own` is the tier of the column.
+
+        The cost of an edit of rows is that of their columns, unless the column of the rows costs nothing.
+        """
+        if own is not Tier.NOTHING and isinstance(one, Row):
+            return cost(one, other, own)
+        if isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
+            pairs = zip(one, other, strict=True)
+            return _largest(self.cost(a, b, own) for a, b in pairs if a is not b)
         return None if one == other else own
 
     def between(self, one: Any, other: Any, share: float) -> Any:
         """The value at a share of the way from one value to another, neither None; 0 < `share` < 1.
 
-        Floats are interpolated linearly, also inside tuples of equal shape. Assumed: any other value holds
-        until the other is reached.
+        Numbers are interpolated linearly, whole numbers are rounded half up, and so are rows and the elements
+        of tuples, if these have the same names. Assumed: any other value holds until the other is reached.
         """
-        return _between(one, other, share)
+        if isinstance(one, Row):
+            return one.between(other, share)
+        if isinstance(one, tuple) and _names_in(one) == _names_in(other):
+            return tuple(self.between(a, b, share) for a, b in zip(one, other, strict=True))
+        if type(one) is type(other) is int:
+            return half_up(one + (other - one) * share)
+        if not (isinstance(one, float) and isinstance(other, float)) or one == other:
+            return one
+        # No bound of a flap is infinitely far away, so the bound holds.
+        if math.isinf(one) or math.isinf(other):
+            return one
+        return min(max(one * (1 - share) + other * share, min(one, other)), max(one, other))
 
 
-def _between(one: Any, other: Any, share: float) -> Any:
-    if isinstance(one, tuple) and isinstance(other, tuple) and len(one) == len(other):
-        return tuple(_between(a, b, share) for a, b in zip(one, other, strict=True))
-    if not (isinstance(one, float) and isinstance(other, float)) or one == other:
-        return one
-    # No bound of a flap is infinitely far away, so the bound holds.
-    if math.isinf(one) or math.isinf(other):
-        return one
-    return min(max(one * (1 - share) + other * share, min(one, other)), max(one, other))
+def _names_in(value: Any) -> Any:
+    """The names of the rows in a tuple, and its texts, in place of its elements; None for those without."""
+    if isinstance(value, tuple):
+        return [_names_in(element) for element in value]
+    return value if isinstance(value, str) else vars(value).get("name") if isinstance(value, Row) else None
 
 
 class Row(Immutable):
@@ -172,7 +196,7 @@ class Row(Immutable):
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = ()
 
     def __post_init__(self) -> None:
-        check(self, fields_of(type(self)))
+        check(self, fields_of(type(self)), [])
 
     def rules(self) -> Iterator[Problem]:
         """The problems of rules between columns. A column with an invalid value is REFUSED."""
@@ -190,21 +214,17 @@ class Row(Immutable):
         copy = object.__new__(type(self))
         has_same_groups = not self.alternatives or reset_fields(self) == reset_fields(other)
         held = () if has_same_groups else {name for group in self.alternatives for name in group}
-        for name, field in fields_of(type(self)).items():
+        for name, column in fields_of(type(self)).items():
             a, b = ones[name], others[name]
             holds = a is b or a is None or b is None or name in held
-            vars(copy)[name] = a if holds else field.column.kind.between(a, b, share)
+            vars(copy)[name] = a if holds else column.kind.between(a, b, share)
         return copy
 
     def __repr__(self) -> str:
         # Leave out fields that have their defaults.
-        values = vars(self)
-        shown_fields = [
-            f"{name}={values[name]!r}"
-            for name, field in fields_of(type(self)).items()
-            if field.default is None or field.default() != values[name]
-        ]
-        return f"{type(self).__name__}({', '.join(shown_fields)})"
+        columns, values = fields_of(type(self)), vars(self)
+        given = [f"{name}={values[name]!r}" for name in columns if columns[name].default != values[name]]
+        return f"{type(self).__name__}({', '.join(given)})"
 
 
 SomeRow = TypeVar("SomeRow", bound=Row)
@@ -216,45 +236,26 @@ def cached_by_class(function: Callable[[type[Row]], Result]) -> Callable[[type[R
     return cast(Callable[[type[Row]], Result], cache(function))
 
 
-class Field(NamedTuple):
-    """A field of a row class: its column, whether it may be None, and a function for its default, if any."""
-
-    column: Column
-    is_optional: bool
-    default: Callable[[], object] | None
-
-
 @cached_by_class
-def fields_of(cls: type[Row]) -> Mapping[str, Field]:
-    """The fields of a row class by name, in definition order."""
-    hints = get_type_hints(cls, include_extras=True)
-    fields = {}
-    for field in dataclasses.fields(cls):  # type: ignore[arg-type]
-        (column,) = (mark for mark in hints[field.name].__metadata__ if isinstance(mark, Column))
-        default: Callable[[], object] | None = None
-        if field.default_factory is not dataclasses.MISSING:
-            default = field.default_factory
-        elif field.default is not dataclasses.MISSING:
-            default = partial(getattr, field, "default")
-        fields[field.name] = Field(column, field.default is None, default)
-    return fields
+def fields_of(cls: type[Row]) -> Mapping[str, Column]:
+    """The columns of a row class by the names of their fields, in definition order."""
+    return {field.name: field.metadata["column"] for field in dataclasses.fields(cls)}  # type: ignore[arg-type]
 
 
 class RowKey(NamedTuple):
-    """A key of a row in a file: its column, its field, and whether it is a key inside the field's value."""
+    """A key of a row in a file: its column and its field, which has another name if the key is inside it."""
 
     column: Column
     field: str
-    is_inside: bool
 
 
 @cached_by_class
 def keys_of(cls: type[Row]) -> Mapping[str, RowKey]:
     """The keys of a row class in a file, in the order of its fields."""
     return {
-        key: RowKey(column, name, field.column.kind.has_keys_inside)
-        for name, field in fields_of(cls).items()
-        for key, column in field.column.kind.keys(name, field.column).items()
+        key: RowKey(column, name)
+        for name, own in fields_of(cls).items()
+        for key, column in own.kind.keys(name, own).items()
     }
 
 
@@ -264,40 +265,24 @@ def row_label(row: Row) -> str:
     return f"{row.noun} {shown(name)}" if row.noun and isinstance(name, str) and name else row.noun
 
 
-MOST_KEYS: Final = 64
-"""Limit: keys of a table."""
-
-PLAIN_TYPES: Final = frozenset((float, int, bool, str, tuple, list))
-"""Types of most values, and not of tables. Measured: testing for `Mapping` takes several times as long."""
-
-
 def replaced(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
     """The row with some fields or keys replaced; a table for a row inside it replaces that row's keys.
 
     Raises RowError with every problem.
-
-    Measured: with cold caches a function call takes longer than its work, so this function calls few.
     """
-    fields = fields_of(type(row))
-    problems: list[Problem] = []
-    values, inside = _values_by_field(row, changes, problems)
     # Copy the columns only: cached properties may depend on them.
-    copy = object.__new__(type(row))
-    present, fresh = vars(row), vars(copy)
-    fresh.update(present if len(present) == len(fields) else {name: present[name] for name in fields})
-    fresh.update(values)
-    for name, table in inside.items():
-        fresh[name] = fields[name].column.kind.replaced(fresh[name], table, (name,), problems)
-        if not isinstance(fresh[name], Row):
-            values[name] = fresh[name]
-    if values or type(row).rules is not Row.rules:
-        try:
-            check(copy, {name: fields[name] for name in values})
-        except RowError as error:
-            problems.extend(error.row_problems)
-    if problems:
-        raise RowError(problems, row_label(row))
-    return copy
+    present = vars(row)
+    return _made(type(row), {name: present[name] for name in fields_of(type(row))}, changes)
+
+
+def from_plain(cls: type[SomeRow], table: object) -> SomeRow:
+    """The row of a class for a table of keys and plain values; omitted keys have their defaults.
+
+    Raises RowError with every problem.
+    """
+    if not isinstance(table, Mapping):
+        raise RowError([Problem((), f"must be a table of {listed(keys_of(cls))}, not {shown(table)}")])
+    return _made(cls, {name: column.default for name, column in fields_of(cls).items()}, table)
 
 
 def with_values(row: SomeRow, values: Mapping[str, object]) -> SomeRow:
@@ -306,41 +291,57 @@ def with_values(row: SomeRow, values: Mapping[str, object]) -> SomeRow:
     Cached properties are copied: they must not depend on these fields.
     """
     copy = object.__new__(type(row))
-    fresh = vars(copy)
-    fresh.update(vars(row))
-    fresh.update(values)
+    vars(copy).update({**vars(row), **values})
     return copy
 
 
-def _values_by_field(
-    row: Row, changes: Mapping[str, Any], problems: list[Problem]
-) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
-    """The new values of fields, and for each field with a row inside, the new values of that row's keys.
+MOST_KEYS: Final = 64
+"""Limit: keys of a table."""
 
-    An unknown name is left out, and a problem appended.
+
+def _made(cls: type[SomeRow], present: dict[str, Any], changes: Mapping[str, Any]) -> SomeRow:
+    """The row of a class with some of its present values, by field, replaced. Raises RowError.
+
+    Measured: with cold caches a function call takes longer than its work, so this function calls few.
     """
+    row = object.__new__(cls)
+    fresh = vars(row)
+    fresh.update(present)
     if len(changes) > MOST_KEYS:
         text = f"it must be a table of at most {MOST_KEYS} keys, not {len(changes):,}"
         raise RowError([Problem((), text)], row_label(row))
-    fields, keys = fields_of(type(row)), keys_of(type(row))
+    fields, keys = fields_of(cls), keys_of(cls)
+    problems: list[Problem] = []
+    # Find the new values of fields, and for each field with a row inside, those of that row's keys.
     values: dict[str, Any] = {}
     inside: dict[str, dict[str, Any]] = {}
     for name, value in changes.items():
         key = keys.get(name)
-        if key is not None and key.is_inside:
+        if key is not None and key.field != name:
             inside.setdefault(key.field, {})[name] = value
         elif name not in fields:
             problems.append(unknown_key(name, {**fields, **keys}))
-        elif type(value) not in PLAIN_TYPES and isinstance(value, Mapping):
+        elif isinstance(value, Mapping):
             inside.setdefault(name, {}).update(value)
         else:
             values[name] = value
-    used = [group for group in row.alternatives if any(values.get(name) is not None for name in group)]
+    used = [group for group in cls.alternatives if any(values.get(name) is not None for name in group)]
     if used:
-        unused = [name for group in row.alternatives if group not in used for name in group]
-        resets = {name: fields[name].default for name in unused}
-        values = {**{name: default() for name, default in resets.items() if default}, **values}
-    return values, inside
+        unused = (name for group in cls.alternatives if group not in used for name in group)
+        values = {**{name: fields[name].default for name in unused}, **values}
+    fresh.update(values)
+    for name, value in fresh.items():
+        if value is MISSING:
+            fresh[name] = REFUSED
+            if name not in inside:
+                text = f"{name} {fields[name].kind.rule()}, not missing; add it"
+                problems.append(Problem((name,), text, names_key=True))
+    for name, table in inside.items():
+        fresh[name] = fields[name].kind.replaced(fresh[name], table, (name,), problems)
+        if not isinstance(fresh[name], Row):
+            values[name] = fresh[name]
+    check(row, {name: fields[name] for name in values}, problems)
+    return row
 
 
 def reset_fields(row: Row) -> tuple[str, ...]:
@@ -355,46 +356,14 @@ def reset_fields(row: Row) -> tuple[str, ...]:
     return ()
 
 
-def from_plain(cls: type[SomeRow], table: object) -> SomeRow:
-    """The row of a class for a table of keys and plain values; omitted keys have their defaults.
-
-    Raises RowError with every problem.
-    """
-    if not isinstance(table, Mapping):
-        raise RowError([Problem((), f"must be a table of {listed(keys_of(cls))}, not {shown(table)}")])
-    fields = fields_of(cls)
-    row = object.__new__(cls)
-    row_values = vars(row)
-    row_values.update(
-        {name: REFUSED if field.default is None else field.default() for name, field in fields.items()}
-    )
-    problems: list[Problem] = []
-    values, inside = _values_by_field(row, table, problems)
-    problems.extend(
-        Problem((name,), f"{name} {field.column.kind.rule()}, not missing; add it", names_key=True)
-        for name, field in fields.items()
-        if field.default is None and name not in values and name not in inside
-    )
-    row_values.update(values)
-    for name, keys in inside.items():
-        row_values[name] = fields[name].column.kind.replaced(row_values[name], keys, (name,), problems)
-    try:
-        check(row, fields)
-    except RowError as error:
-        problems.extend(error.row_problems)
-    if problems:
-        raise RowError(problems, row_label(row))
-    return row
-
-
 def to_plain(row: Row) -> dict[str, object]:
     """The row as keys and plain values, which TOML and JSON can hold; None and reset values are omitted."""
     values, resets = vars(row), reset_fields(row)
     return {
         key: value
-        for name, field in fields_of(type(row)).items()
+        for name, column in fields_of(type(row)).items()
         if values[name] is not None and name not in resets
-        for key, value in field.column.kind.to_plain(name, values[name]).items()
+        for key, value in column.kind.to_plain(name, values[name]).items()
         if value is not None
     }
 
@@ -406,18 +375,16 @@ def difference(one: Row, other: Row) -> dict[str, object]:
     """
     ones, others, resets = vars(one), vars(other), reset_fields(other)
     changes: dict[str, object] = {}
-    for name, field in fields_of(type(one)).items():
-        before, after, kind = ones[name], others[name], field.column.kind
-        if before is after:
+    for name, column in fields_of(type(one)).items():
+        before, after = ones[name], others[name]
+        if before is after or (name in resets and after is not None):
             continue
         if after is None:
             changes[name] = None
-        elif name in resets:
-            continue
         elif before is None:
-            changes.update(kind.to_plain(name, after))
+            changes |= column.kind.to_plain(name, after)
         else:
-            changes.update(kind.difference(name, before, after))
+            changes |= column.kind.difference(name, before, after)
     return changes
 
 
@@ -429,13 +396,15 @@ def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
     if type(one) is not type(other):
         return own
     ones, others = vars(one), vars(other)
-    most: Tier | None = None
-    for name, (column, _, _) in fields_of(type(one)).items():
-        if ones[name] is not others[name]:
-            costs = column.kind.cost(ones[name], others[name], column.tier)
-            if costs is not None and (most is None or costs > most):
-                most = costs
-    return most
+    return _largest(
+        column.kind.cost(ones[name], others[name], column.tier)
+        for name, column in fields_of(type(one)).items()
+        if ones[name] is not others[name]
+    )
+
+
+def _largest(costs: Iterable[Tier | None]) -> Tier | None:
+    return max((tier for tier in costs if tier is not None), default=None)
 
 
 BARE: Final = re.compile(r"[\w-]{1,100}")
@@ -491,49 +460,33 @@ class RowError(InputError):
         return RowError, (self.row_problems, self.row)
 
 
-class Refused:
-    """The placeholder for an invalid value while the rules between columns are checked.
+REFUSED: Final[Any] = float("nan")
+"""The placeholder for an invalid value while the rules between columns are checked.
 
-    All its comparisons are false, so that these rules report no further problem of the value.
-    """
-
-    def __eq__(self, other: object) -> bool:
-        return False
-
-    def __gt__(self, other: object) -> bool:
-        return False
-
-    __ge__ = __lt__ = __le__ = __gt__
-    __hash__ = object.__hash__
+It is not a number, so that all its comparisons are false, and these rules report no further problem of it.
+"""
 
 
-REFUSED: Final[Any] = Refused()
+def refused(problems: list[Problem], path: Path, text: str) -> Any:
+    """Append a problem and return REFUSED."""
+    problems.append(Problem(path, text))
+    return REFUSED
 
 
-def check(row: Row, fields: Mapping[str, Field]) -> None:
+def check(row: Row, fields: Mapping[str, Column], problems: list[Problem]) -> None:
     """Check and convert some fields of a row in place, then check the rules between its columns.
 
-    Raises RowError with every problem.
+    Raises RowError with every problem, after those that are there already.
     """
-    problems: list[Problem] = []
     values = vars(row)
-    is_refused = False
-    for name, (column, is_optional, _) in fields.items():
+    for name, column in fields.items():
         value = values[name]
-        if value is not REFUSED and not (is_optional and value is None):
-            values[name] = value = column.kind.validated(value, (name,), problems)
-        is_refused |= value is REFUSED
+        if value is not REFUSED and not (value is None and column.default is None):
+            values[name] = column.kind.validated(value, (name,), problems)
     if type(row).rules is not Row.rules:
         problems.extend(row.rules())
-    if problems or is_refused:
+    if problems:
         raise RowError(problems, row_label(row))
-
-
-STEPS: Final = 100
-"""Assumed: the least number of steps of a bar, so that a step is a small change."""
-
-DIGITS: Final = 12
-"""Digits of a rounded value: enough for any step, and few enough to write 0.3 as 0.3."""
 
 
 class BarRange(NamedTuple):
@@ -545,44 +498,3 @@ class BarRange(NamedTuple):
     low: float
     high: float
     step: float
-
-    def rounded(self, value: float) -> float:
-        """The nearest value on the bar, with halves rounded up; a value beyond an end becomes the end.
-
-        >>> BarRange(0, 2, 0.01).rounded(0.2987), BarRange(1, 90, 1).rounded(0)
-        (0.3, 1.0)
-        """
-        within = min(max(value, self.low), self.high)
-        on_step = float(f"{math.floor(within / self.step + 0.5) * self.step:.{DIGITS}g}")
-        return float(min(max(on_step, self.low), self.high))
-
-    def fraction(self, value: float) -> float:
-        """The place of a value along the bar, 0 to 1."""
-        return (min(max(value, self.low), self.high) - self.low) / (self.high - self.low)
-
-    def at(self, fraction: float) -> float:
-        """The value on the bar at a fraction of its length; fractions beyond 0 and 1 give the ends.
-
-        >>> BarRange(-180, 180, 1).at(0.5)
-        0.0
-        """
-        return self.rounded(self.low + fraction * (self.high - self.low))
-
-
-def bar_within(low: float, high: float) -> BarRange:
-    """The bar from `low` to a larger `high`, with at least STEPS steps of 1, 2 or 5 times a power of ten.
-
-    >>> bar_within(0, 180)
-    BarRange(low=0, high=180, step=1.0)
-    """
-    most = (high - low) / STEPS
-    power = 10.0 ** math.floor(math.log10(most))
-    # A step may exceed its bound by no more than rounding: 0.01 is a hundredth of 1.
-    steps = [factor * power for factor in (1, 2, 5, 10)]
-    step = max((step for step in steps if step <= most * (1 + 1e-9)), default=power)
-    return BarRange(low, high, float(f"{step:.{DIGITS}g}"))
-
-
-def bar_of(column: Column) -> BarRange | None:
-    """The bar of a column; None unless it has numbers with a usual range. Whole numbers have whole steps."""
-    return column.bar if column.bar is not None else column.kind.bar()

@@ -122,7 +122,7 @@ def scene_of(
 
 
 def _validated(name: str, value: object, problems: list[Problem]) -> Any:
-    return fields_of(Scene)[name].column.kind.validated(value, (name,), problems)
+    return fields_of(Scene)[name].kind.validated(value, (name,), problems)
 
 
 def _part_rows(

@@ -87,7 +87,7 @@ def moved_vectors(
 
 def vector_columns(row_class: type[Row]) -> Mapping[str, bool]:
     """The names of the columns of a row class that are vectors, and whether each is a direction."""
-    kinds = {name: field.column.kind for name, field in fields_of(row_class).items()}
+    kinds = {name: field.kind for name, field in fields_of(row_class).items()}
     return {name: kind.has_length for name, kind in kinds.items() if isinstance(kind, VectorKind)}
 
 

@@ -1,24 +1,35 @@
 """The kinds of columns whose values have no fields: numbers, strings, vectors, curves, colors and others.
 
-The methods are described in `columns.Kind`.
+The methods are described in `columns.Kind`. A function such as `number` makes the field of a row class; the
+keywords of any field are those of `columns.About`.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from itertools import islice, pairwise
-from numbers import Integral, Real
-from typing import Any, Final
+from numbers import Integral
+from typing import Any, Final, Unpack
 
 import numpy as np
 
-from autocolor.arrays import half_up, unit_vector
-from autocolor.checks import Color, Vector, closest, either, shown
-from autocolor.scene.columns import REFUSED, BarRange, Kind, Path, Problem, Tier, bar_within
+from autocolor.arrays import Floats, unit_vector
+from autocolor.checks import Color, Vector, closest, either
+from autocolor.scene.columns import (
+    MISSING,
+    REFUSED,
+    WORLD_UNITS,
+    About,
+    Default,
+    Kind,
+    Path,
+    Problem,
+    Tier,
+    column_of,
+)
 
 LARGEST_PLACE: Final = 1e36
 """Limit: a coordinate. It leaves room for the eye and the lights around the largest object."""
@@ -37,7 +48,7 @@ def require(condition: bool) -> None:
 
 
 @dataclass(frozen=True)
-class Number(Kind):
+class Number(Kind[float]):
     """A finite number within bounds, converted to float.
 
     With `above`, the lower bound is excluded. The infinite value `endless` is accepted, too: it means "no
@@ -50,9 +61,6 @@ class Number(Kind):
     above: bool = False
     endless: float | None = None
     turns: bool = False
-
-    def accepts(self) -> str:
-        return "float"
 
     def rule(self) -> str:
         if self.above:
@@ -70,20 +78,25 @@ class Number(Kind):
         require(number == self.endless or (is_within and -math.inf < number < math.inf))
         return number
 
-    def bar(self) -> BarRange | None:
-        is_limited = -math.inf < self.at_least < self.at_most < math.inf and not self.above
-        return bar_within(self.at_least, self.at_most) if is_limited else None
-
-    def between(self, one: float, other: float, share: float) -> float:
-        value: float = super().between(one, other, share)
+    def between(self, one: Any, other: Any, share: float) -> Any:
+        value = super().between(one, other, share)
         return one + share * short_turn(one, other) if self.turns else value
 
     def to_plain(self, name: str, value: float) -> Mapping[str, object]:
         return {name: None if value == self.endless else value}
 
-    def difference(self, name: str, one: float, other: float) -> Mapping[str, object]:
-        # Write an infinite value, too: a change without the key would not change the value.
-        return {} if repr(one) == repr(other) else {name: other}
+
+def number(
+    *,
+    at_least: float = -math.inf,
+    at_most: float = math.inf,
+    above: bool = False,
+    endless: float | None = None,
+    turns: bool = False,
+    **about: Unpack[About[Default]],
+) -> float | Default:
+    """A field of numbers within bounds; see `Number`."""
+    return column_of(Number(at_least, at_most, above, endless, turns), **about)
 
 
 def short_turn(one: float, other: float) -> float:
@@ -96,17 +109,11 @@ def short_turn(one: float, other: float) -> float:
 
 
 @dataclass(frozen=True)
-class Whole(Kind):
+class Whole(Kind[int]):
     """A whole number within bounds."""
 
     at_least: int
     at_most: int
-
-    def accepts(self) -> str:
-        return "int"
-
-    def bar(self) -> BarRange:
-        return BarRange(self.at_least, self.at_most, 1)
 
     def rule(self) -> str:
         return f"must be a whole number from {self.at_least} to {self.at_most}"
@@ -117,32 +124,26 @@ class Whole(Kind):
         require(self.at_least <= number <= self.at_most)
         return number
 
-    def between(self, one: int, other: int, share: float) -> int:
-        return _whole_between(one, other, share)
-
-
-def _whole_between(one: int, other: int, share: float) -> int:
-    """The whole number at a share of the way from one to another, rounded half up."""
-    return half_up(one + (other - one) * share)
-
 
 @dataclass(frozen=True)
-class Boolean(Kind):
+class Boolean(Kind[bool]):
     """A boolean."""
 
     def rule(self) -> str:
         return "must be true or false"
-
-    def accepts(self) -> str:
-        return "bool"
 
     def accepted(self, value: Any) -> bool:
         require(isinstance(value, (bool, np.bool_)))
         return bool(value)
 
 
+def boolean(**about: Unpack[About[Default]]) -> bool | Default:
+    """A field of booleans."""
+    return column_of(Boolean(), **about)
+
+
 @dataclass(frozen=True)
-class Text(Kind):
+class Text(Kind[str]):
     """A string, not empty unless `may_be_empty`."""
 
     may_be_empty: bool = False
@@ -150,17 +151,21 @@ class Text(Kind):
     def rule(self) -> str:
         return "must be a string" + ("" if self.may_be_empty else " of at least one character")
 
-    def accepts(self) -> str:
-        return "str"
-
     def accepted(self, value: Any) -> str:
         require(isinstance(value, str) and (value != "" or self.may_be_empty))
-        text: str = value
-        return text
+        return str(value)
+
+
+def text(*, may_be_empty: bool = False, **about: Unpack[About[Default]]) -> str | Default:
+    """A field of strings, not empty unless `may_be_empty`."""
+    return column_of(Text(may_be_empty), **about)
+
+
+COORDINATE: Final = Number(-LARGEST_PLACE, LARGEST_PLACE)
 
 
 @dataclass(frozen=True)
-class VectorKind(Kind):
+class VectorKind(Kind[Vector]):
     """A point or a direction: three finite numbers; with `has_length`, not all zero."""
 
     has_length: bool = False
@@ -168,74 +173,60 @@ class VectorKind(Kind):
     def rule(self) -> str:
         return "must be three finite numbers of at most 1e36"
 
-    def accepts(self) -> str:
-        return "Sequence[float]"
-
-    def accepted(self, value: Any) -> tuple[float, float, float]:
+    def accepted(self, value: Any) -> Vector:
         require(not isinstance(value, UNORDERED))
-        given = list(value)
-        require(len(given) == 3 and not any(isinstance(component, NO_NUMBERS) for component in given))
-        x, y, z = (float(component) for component in given)
-        require(all(abs(component) <= LARGEST_PLACE for component in (x, y, z)))
+        x, y, z = map(COORDINATE.accepted, value)
+        require(not self.has_length or (x, y, z) != (0, 0, 0))
         return x, y, z
 
     def advice(self, value: object) -> str:
-        return "; write them as in [1, 2, 3]" if isinstance(value, str) else ""
+        if isinstance(value, str):
+            return "; write them as in [1, 2, 3]"
+        return "; one of them must not be 0" if self.has_length else ""
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
-        vector = super().validated(value, path, problems)
-        if self.has_length and vector == (0.0, 0.0, 0.0):
-            problems.append(Problem(path, f"must have a length above 0, not {shown(value)}; change it"))
-            return REFUSED
-        return vector
-
-    def between(self, one: Vector, other: Vector, share: float) -> Vector:
+    def between(self, one: Any, other: Any, share: float) -> Any:
         """A point moves along a line. A direction turns along a great circle, and its length is linear."""
-        if not self.has_length:
-            point: Vector = super().between(one, other, share)
-            return point
+        if not self.has_length or isinstance(one, float):
+            return super().between(one, other, share)
         length = super().between(math.hypot(*one), math.hypot(*other), share)
-        x, y, z = (length * component for component in _direction_between(one, other, share))
-        return x, y, z
+        return tuple((length * _direction_between(one, other, share)).tolist())
+
+
+def coordinates(*, tier: Tier, help: str, default: Default = MISSING) -> Vector | Default:
+    """A field of points, in world units."""
+    return column_of(VectorKind(), unit=WORLD_UNITS, tier=tier, help=help, default=default)
+
+
+def vector(**about: Unpack[About[Default]]) -> Vector | Default:
+    """A field of directions, of any length."""
+    return column_of(VectorKind(has_length=True), **about)
 
 
 LEAST_SINE: Final = 1e-9
 """Assumed: directions with a smaller sine of their angle are in a line; rounding would decide how to turn."""
 
 
-def _direction_between(one: Vector, other: Vector, share: float) -> Vector:
+def _direction_between(one: Vector, other: Vector, share: float) -> Floats:
     """The unit vector at a share of the shortest turn from one direction to another.
 
     Assumed: opposite directions turn through the vertical; from the vertical, through +x.
     """
-    start, end = unit_vector(one), unit_vector(other)
-    cosine = _dot(start, end)
-    aside = _aside(start, end)
+    start, end = np.array(unit_vector(one)), np.array(unit_vector(other))
+    cosine = float((start * end).sum())
+    # The component at right angles to the start.
+    aside = end - cosine * start
     angle = math.atan2(math.hypot(*aside), cosine)
-    if math.hypot(*aside) < LEAST_SINE:
-        if cosine > 0:
-            return start
-        aside = _aside(start, (0.0, 0.0, 1.0))
+    for other_way in ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]):
         if math.hypot(*aside) < LEAST_SINE:
-            aside = 1.0, 0.0, 0.0
-    along, across = math.cos(share * angle), math.sin(share * angle)
-    x, y, z = (along * a + across * b for a, b in zip(start, unit_vector(aside), strict=True))
-    return x, y, z
-
-
-def _dot(one: Vector, other: Vector) -> float:
-    return sum(a * b for a, b in zip(one, other, strict=True))
-
-
-def _aside(start: Vector, toward: Vector) -> Vector:
-    """The component of a unit vector at right angles to another."""
-    cosine = _dot(start, toward)
-    x, y, z = (b - cosine * a for a, b in zip(start, toward, strict=True))
-    return x, y, z
+            if cosine > 0:
+                return start
+            aside = other_way - (start * other_way).sum() * start
+    x, y, z = aside.tolist()
+    return math.cos(share * angle) * start + math.sin(share * angle) * np.array(unit_vector((x, y, z)))
 
 
 @dataclass(frozen=True)
-class OneOf(Kind):
+class OneOf(Kind[str]):
     """One of several names."""
 
     names: tuple[str, ...]
@@ -243,42 +234,50 @@ class OneOf(Kind):
     def rule(self) -> str:
         return f"must be {either(self.names)}"
 
-    def accepts(self) -> str:
-        return f"Literal[{', '.join(map(json.dumps, self.names))}]"
-
     def accepted(self, value: Any) -> str:
         require(isinstance(value, str) and value in self.names)
-        name: str = value
-        return name
+        return str(value)
 
     def advice(self, value: object) -> str:
         return closest(value, self.names) if isinstance(value, str) else ""
 
 
+def one_of(names: tuple[str, ...], **about: Unpack[About[Default]]) -> str | Default:
+    """A field of several names."""
+    return column_of(OneOf(names), **about)
+
+
+AngleCurve = tuple[tuple[float, float], ...]
+"""Points (x, y) of a piecewise linear curve, with rising x."""
+
+
+def _points(value: Any, end: float, most: float = math.inf) -> tuple[tuple[float, float], ...]:
+    """The 2 to `most` points of a curve from x = 0 to x = end, y from 0 to 1. Raises ValueError."""
+    require(not isinstance(value, UNORDERED))
+    pairs = list(value)
+    require(2 <= len(pairs) <= most and not any(isinstance(pair, UNORDERED) for pair in pairs))
+    along, share = Number(0, end).accepted, Number(0, 1).accepted
+    points = tuple((along(x), share(y)) for x, y in pairs)
+    require(points[0][0] == 0 and points[-1][0] == end)
+    require(all(one[0] < other[0] for one, other in pairwise(points)))
+    return points
+
+
 @dataclass(frozen=True, eq=False)
-class CurveKind(Kind):
+class CurveKind(Kind[str | AngleCurve]):
     """The name of a curve, or points (x, y) of a nondecreasing curve from x = 0 to x = 1."""
 
     names: Mapping[str, object]
 
-    def accepts(self) -> str:
-        return "str | Sequence[Sequence[float]]"
-
     def rule(self) -> str:
         return f"must be {', '.join(map(repr, self.names))}, or rising points [x, y] from x = 0 to x = 1"
 
-    def accepted(self, value: Any) -> str | tuple[tuple[float, float], ...]:
+    def accepted(self, value: Any) -> str | AngleCurve:
         if isinstance(value, str):
             require(value in self.names)
             return value
-        require(not isinstance(value, UNORDERED))
-        pairs = list(value)
-        require(not any(isinstance(pair, UNORDERED) for pair in pairs))
-        along = Number(at_least=0, at_most=1).accepted
-        points = tuple((along(x), along(y)) for x, y in pairs)
-        xs, ys = [x for x, _ in points], [y for _, y in points]
-        require(len(points) >= 2 and xs[0] == 0 and xs[-1] == 1 and all(a < b for a, b in pairwise(xs)))
-        require(all(a <= b for a, b in pairwise(ys)))
+        points = _points(value, 1)
+        require(all(one[1] <= other[1] for one, other in pairwise(points)))
         return points
 
     def advice(self, value: object) -> str:
@@ -286,42 +285,28 @@ class CurveKind(Kind):
 
 
 @dataclass(frozen=True, eq=False)
-class Instance(Kind):
-    """An instance of a class, such as the mesh. It is compared by identity, and scene files leave it out."""
+class Instance(Kind[Any]):
+    """An instance of a class, such as the mesh. Scene files leave it out."""
 
     value_class: type
 
     def rule(self) -> str:
         return f"must be a {self.value_class.__name__}"
 
-    def accepts(self) -> str:
-        return "object"
-
-    def accepted(self, value: Any) -> object:
+    def accepted(self, value: Any) -> Any:
         require(isinstance(value, self.value_class))
         return value
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {}
 
-    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
-        return {}
-
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        return own
-
-
-RIGHT_ANGLE: Final = 90.0
 
 MOST_POINTS: Final = 91
-"""Limit: points of a curve, one for each degree."""
-
-AngleCurve = tuple[tuple[float, float], ...]
-"""Points (angle in degrees, value), with rising angles from 0 to 90, of a piecewise linear curve."""
+"""Limit: points of a curve over angles, one for each degree."""
 
 
 @dataclass(frozen=True)
-class AngleCurveKind(Kind):
+class AngleCurveKind(Kind[AngleCurve]):
     """Points (angle, share) of a curve from 0 to 90 degrees, with shares from 0 to 1.
 
     `least` is the least share at 0 degrees. `start` is the first value when an absent curve is switched on.
@@ -329,9 +314,6 @@ class AngleCurveKind(Kind):
 
     least: float
     start: AngleCurve
-
-    def accepts(self) -> str:
-        return "Sequence[Sequence[float]]"
 
     def rule(self) -> str:
         return (
@@ -343,20 +325,9 @@ class AngleCurveKind(Kind):
         return f"; write them as in {[list(point) for point in self.start]}"
 
     def accepted(self, value: Any) -> AngleCurve:
-        require(not isinstance(value, UNORDERED))
-        pairs = list(value)
-        require(2 <= len(pairs) <= MOST_POINTS)
-        require(not any(isinstance(pair, UNORDERED) for pair in pairs))
-        angle, share = Number(0, RIGHT_ANGLE).accepted, self.share_kind(1).accepted
-        points = tuple((angle(x), share(y)) for x, y in pairs)
-        require(points[0][0] == 0 and points[-1][0] == RIGHT_ANGLE)
-        require(all(one[0] < other[0] for one, other in pairwise(points)))
-        self.share_kind(0).accepted(points[0][1])
+        points = _points(value, 90, MOST_POINTS)
+        require(points[0][1] >= self.least)
         return points
-
-    def share_kind(self, number: int) -> Number:
-        """The kind of a point's share; the number of the point counts from 0."""
-        return Number(0 if number else self.least, 1)
 
 
 LONGEST_COLOR: Final = 100
@@ -366,7 +337,7 @@ SIX_DIGITS: Final = re.compile("#[0-9a-fA-F]{6}")
 
 
 @dataclass(frozen=True)
-class ColorKind(Kind):
+class ColorKind(Kind[Color]):
     """A color: red, green and blue from 0 to 255, written as "#rrggbb".
 
     Three whole numbers are accepted, and every text that Pillow's `ImageColor` knows, unless it has
@@ -377,40 +348,44 @@ class ColorKind(Kind):
     def rule(self) -> str:
         return 'must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255'
 
-    def accepts(self) -> str:
-        return "str | Sequence[int]"
-
     def accepted(self, value: Any) -> Color:
         if isinstance(value, str):
-            return _color_of_text(value)
-        require(not isinstance(value, UNORDERED))
+            value = bytes.fromhex(value[1:]) if SIX_DIGITS.fullmatch(value) else _components(value)
+        else:
+            require(not isinstance(value, UNORDERED))
         given = list(value)
         # Refuse even whole floats: (1.0, 0, 0) is red in other programs, and nearly black here.
         require(all(isinstance(part, Integral) and not isinstance(part, NO_NUMBERS) for part in given))
-        return _within_range(tuple(int(part) for part in given))
+        require(len(given) == 3 and min(given) >= 0 and max(given) <= 255)
+        red, green, blue = map(int, given)
+        return red, green, blue
 
-    def advice(self, value: object) -> str:
-        return _advice_on_text(value) if isinstance(value, str) else _advice_on_floats(value)
+    def advice(self, value: Any) -> str:
+        if isinstance(value, str):
+            return _advice_on_text(value)
+        try:
+            # Most programs write fractions.
+            return f"; write {list(self.accepted([int(255 * part + 0.5) for part in value]))}"
+        except (TypeError, ValueError, OverflowError):
+            return ""
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: in_digits(value)}
 
-    def between(self, one: Color, other: Color, share: float) -> Color:
-        red, green, blue = (_whole_between(a, b, share) for a, b in zip(one, other, strict=True))
-        return red, green, blue
+
+def color(**about: Unpack[About[Default]]) -> Color | Default:
+    """A field of colors."""
+    return column_of(ColorKind(), **about)
 
 
 @dataclass(frozen=True)
-class ColorsKind(Kind):
+class ColorsKind(Kind[tuple[Color, ...]]):
     """A list of 2 to `most` colors. A text of colors between commas, as in "#200, #f60", is accepted."""
 
     most: int
 
     def rule(self) -> str:
         return f"must be a list of 2 to {self.most} colors"
-
-    def accepts(self) -> str:
-        return "str | Sequence[str | Sequence[int]]"
 
     def accepted(self, value: Any) -> tuple[Color, ...]:
         require(not isinstance(value, UNORDERED))
@@ -421,7 +396,7 @@ class ColorsKind(Kind):
     def advice(self, value: object) -> str:
         return '; write them as in ["#200", "#f60", "#fff"]'
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         given = value
         if isinstance(value, str) and len(value) <= LONGEST_COLOR * self.most:
             given = _between_commas(value.removeprefix("[").removesuffix("]"))
@@ -434,30 +409,14 @@ class ColorsKind(Kind):
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: [in_digits(color) for color in value]}
 
-    def between(self, one: Any, other: Any, share: float) -> Any:
-        """Lists of equally many colors are interpolated, color by color; other lists hold."""
-        if len(one) != len(other):
-            return one
-        return tuple(ColorKind().between(a, b, share) for a, b in zip(one, other, strict=True))
-
 
 def _between_commas(text: str) -> list[str]:
-    """The parts of a text between its commas, without spaces and quotes around them.
-
-    Commas in parentheses do not count.
+    """The parts of a text between its commas, except those in parentheses, without spaces and quotes.
 
     >>> _between_commas("red, 'rgb(1, 2, 3)'")
     ['red', 'rgb(1, 2, 3)']
     """
-    parts: list[list[str]] = []
-    depth = 0
-    for part in text.split(","):
-        if depth > 0:
-            parts[-1].append(part)
-        else:
-            parts.append([part])
-        depth += part.count("(") - part.count(")")
-    return [",".join(part).strip(" '\"") for part in parts]
+    return [part.strip(" '\"") for part in re.split(rf",(?![^()]{{0,{LONGEST_COLOR}}}\))", text)]
 
 
 def in_digits(color: Color) -> str:
@@ -476,14 +435,6 @@ def color_names() -> tuple[str, ...]:
     return tuple(ImageColor.colormap)
 
 
-def _color_of_text(text: str) -> Color:
-    """The color that a text describes. Raises ValueError if it describes none, or has transparency."""
-    if SIX_DIGITS.fullmatch(text):
-        red, green, blue = bytes.fromhex(text[1:])
-        return red, green, blue
-    return _within_range(_components(text))
-
-
 def _components(text: str) -> tuple[int, ...]:
     """The three or four components, of any size, of a text that Pillow knows. Raises ValueError."""
     # Pillow would also accept a line break at the end, and digits of other alphabets.
@@ -491,12 +442,6 @@ def _components(text: str) -> tuple[int, ...]:
     from PIL import ImageColor
 
     return ImageColor.getrgb(text)
-
-
-def _within_range(components: tuple[int, ...]) -> Color:
-    require(len(components) == 3 and min(components) >= 0 and max(components) <= 255)
-    red, green, blue = components
-    return red, green, blue
 
 
 def _advice_on_text(text: str) -> str:
@@ -515,20 +460,3 @@ def _advice_on_text(text: str) -> str:
     if re.fullmatch("[A-Za-z]{2,}", text):
         return closest(text.lower(), color_names()) or '; write it as in "#b01020"'
     return '; write it as in "#b01020"'
-
-
-def _advice_on_floats(value: object) -> str:
-    """How to write the color if some of three numbers are floats; empty for any other value."""
-    try:
-        parts = list(value)  # type: ignore[call-overload]
-        if len(parts) != 3 or all(isinstance(part, (Integral, *NO_NUMBERS)) for part in parts):
-            return ""
-        require(all(isinstance(part, Real) for part in parts))
-        # Numbers up to 1 are fractions, as most programs write colors with floats.
-        scale = 255 if max(parts) <= 1 else 1
-        red, green, blue = (int(float(part) * scale + 0.5) for part in parts)
-        color = _within_range((red, green, blue))
-    except (TypeError, ValueError, OverflowError):
-        return ""
-    # Python, scene files and --set all write a color as a list.
-    return f"; write {list(color)} or {in_digits(color)!r}"

@@ -14,8 +14,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Final, Unpack
+from typing import ClassVar, Final, Unpack
 
 import numpy as np
 
@@ -26,16 +25,16 @@ from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges,
 from autocolor.scene.columns import (
     WORLD_UNITS,
     BarRange,
-    Column,
     Problem,
     Row,
     RowError,
     Tier,
+    column_of,
     fields_of,
     replaced,
 )
-from autocolor.scene.kinds import Boolean, Number, OneOf, Text, VectorKind
-from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References
+from autocolor.scene.kinds import VectorKind, boolean, coordinates, number, one_of, text, vector
+from autocolor.scene.row_kinds import NamedRows, Reference, References, nested, table_row
 
 AXES: Final = ("x", "y", "z")
 """The axes of the world in the order of coordinates."""
@@ -54,7 +53,7 @@ NUMBER_AT_END: Final = re.compile(r" [0-9]{1,9}\Z")
 Names = tuple[str, ...]
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Flap(Row):
     """A range of one object coordinate outside of which a light has no effect, and a switch.
 
@@ -64,24 +63,28 @@ class Flap(Row):
 
     noun: ClassVar[str] = "flap"
 
-    minimum: Annotated[
-        float,
-        Column(Number(endless=-math.inf), Tier.LIGHT, "The smallest coordinate that is lit.", WORLD_UNITS),
-    ] = -math.inf
-    maximum: Annotated[
-        float,
-        Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", WORLD_UNITS),
-    ] = math.inf
-    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
-    edge_width: Annotated[
-        float,
-        Column(
-            Number(at_least=0),
-            Tier.LIGHT,
-            "The distance inside the ends to full light; 0 for sharp edges.",
-            WORLD_UNITS,
-        ),
-    ] = 0.0
+    minimum: float = number(
+        default=-math.inf,
+        endless=-math.inf,
+        unit=WORLD_UNITS,
+        tier=Tier.LIGHT,
+        help="The smallest coordinate that is lit.",
+    )
+    maximum: float = number(
+        default=math.inf,
+        endless=math.inf,
+        unit=WORLD_UNITS,
+        tier=Tier.LIGHT,
+        help="The largest coordinate that is lit.",
+    )
+    on: bool = boolean(default=True, tier=Tier.LIGHT, help="Whether the flap restricts the light.")
+    edge_width: float = number(
+        default=0.0,
+        at_least=0,
+        unit=WORLD_UNITS,
+        tier=Tier.LIGHT,
+        help="The distance inside the ends to full light; 0 for sharp edges.",
+    )
 
     def rules(self) -> Iterator[Problem]:
         """The minimum is at most the maximum."""
@@ -94,22 +97,22 @@ class Flap(Row):
         return replaced(self, changes)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Flaps(Row):
     """The flaps of a light in the X, Y and Z directions; None for no flap."""
 
     noun: ClassVar[str] = "flaps"
 
-    x: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of X that is lit.")] = None
-    y: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Y that is lit.")] = None
-    z: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Z that is lit.")] = None
+    x: Flap | None = nested(Flap, default=None, tier=Tier.LIGHT, help="The range of X that is lit.")
+    y: Flap | None = nested(Flap, default=None, tier=Tier.LIGHT, help="The range of Y that is lit.")
+    z: Flap | None = nested(Flap, default=None, tier=Tier.LIGHT, help="The range of Z that is lit.")
 
     def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
         """The flaps with some of them changed; a table of fields changes only these fields of a flap."""
         return replaced(self, changes)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class HalfSpace(Row):
     """The points on one side of a plane, outside of which a light has no effect, and a switch.
 
@@ -121,29 +124,22 @@ class HalfSpace(Row):
 
     noun: ClassVar[str] = "half-space"
 
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "The name of the half-space, unique for the light.")]
-    point: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "A point of the plane.", WORLD_UNITS)]
-    direction: Annotated[
-        Vector,
-        Column(
-            VectorKind(has_length=True),
-            Tier.LIGHT,
-            "The direction from the plane to the side that is lit, of any length.",
-        ),
-    ]
-    edge_width: Annotated[
-        float,
-        Column(
-            Number(at_least=0),
-            Tier.LIGHT,
-            "The distance inside the plane to full light; 0 for a sharp edge.",
-            WORLD_UNITS,
-        ),
-    ] = 0.0
-    carried: Annotated[
-        bool, Column(Boolean(), Tier.LIGHT, "Whether it moves and turns with the light, like a barn door.")
-    ] = False
-    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether the half-space restricts the light.")] = True
+    name: str = text(tier=Tier.NOTHING, help="The name of the half-space, unique for the light.")
+    point: Vector = coordinates(tier=Tier.LIGHT, help="A point of the plane.")
+    direction: Vector = vector(
+        tier=Tier.LIGHT, help="The direction from the plane to the side that is lit, of any length."
+    )
+    edge_width: float = number(
+        default=0.0,
+        at_least=0,
+        unit=WORLD_UNITS,
+        tier=Tier.LIGHT,
+        help="The distance inside the plane to full light; 0 for a sharp edge.",
+    )
+    carried: bool = boolean(
+        default=False, tier=Tier.LIGHT, help="Whether it moves and turns with the light, like a barn door."
+    )
+    on: bool = boolean(default=True, tier=Tier.LIGHT, help="Whether the half-space restricts the light.")
 
     @classmethod
     def through(
@@ -196,7 +192,7 @@ def _scaled(vector: Floats) -> Floats:
     return scaled
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Links(Row):
     """The surfaces and parts that a light shines on, by name; without names, it shines on everything.
 
@@ -206,22 +202,24 @@ class Links(Row):
 
     noun: ClassVar[str] = "links"
 
-    only_surfaces: Annotated[
-        Names | None,
-        Column(References("surfaces"), Tier.MIX, "The surfaces that it shines on; if absent, all surfaces."),
-    ] = None
-    except_surfaces: Annotated[
-        Names | None,
-        Column(References("surfaces"), Tier.MIX, "The surfaces that it does not shine on."),
-    ] = None
-    only_parts: Annotated[
-        Names | None,
-        Column(References("parts"), Tier.LIGHT, "The parts that it shines on; if absent, all parts."),
-    ] = None
-    except_parts: Annotated[
-        Names | None,
-        Column(References("parts"), Tier.LIGHT, "The parts that it does not shine on."),
-    ] = None
+    only_surfaces: Names | None = column_of(
+        References("surfaces"),
+        default=None,
+        tier=Tier.MIX,
+        help="The surfaces that it shines on; if absent, all surfaces.",
+    )
+    except_surfaces: Names | None = column_of(
+        References("surfaces"), default=None, tier=Tier.MIX, help="The surfaces that it does not shine on."
+    )
+    only_parts: Names | None = column_of(
+        References("parts"),
+        default=None,
+        tier=Tier.LIGHT,
+        help="The parts that it shines on; if absent, all parts.",
+    )
+    except_parts: Names | None = column_of(
+        References("parts"), default=None, tier=Tier.LIGHT, help="The parts that it does not shine on."
+    )
 
     def rules(self) -> Iterator[Problem]:
         """Surfaces are listed either to shine on or to except, and likewise parts."""
@@ -255,7 +253,7 @@ class Links(Row):
         would show a light that shines on nothing.
         """
         remaining = {}
-        for field_name, (column, _, _) in fields_of(Links).items():
+        for field_name, column in fields_of(Links).items():
             existing = surfaces if column.kind == References("surfaces") else parts
             if names := vars(self)[field_name]:
                 remaining[field_name] = tuple(name for name in names if name in existing) or None
@@ -272,7 +270,7 @@ AXIS_CONTROLS: Final = ("concentration", "cone_angle", "inner_angle", "at_infini
 """The controls of a light that need an axis: a direction or an aim."""
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Light(Row):
     """A light.
 
@@ -285,104 +283,85 @@ class Light(Row):
     noun: ClassVar[str] = "light"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("aim",))
 
-    name: Annotated[str, Column(Text(), Tier.LIGHT, "The name of the light, which must be unique.")]
-    position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "The position of the light.", WORLD_UNITS)]
-    intensity: Annotated[
-        float,
-        Column(
-            Number(at_least=0),
-            Tier.MIX,
-            "The intensity of the light, without an upper limit.",
-            bar=BarRange(0, 2, 0.01),
-        ),
-    ] = 1.0
-    on: Annotated[bool, Column(Boolean(), Tier.MIX, "Whether the light is switched on.")] = True
-    direction: Annotated[
-        Vector | None,
-        Column(
-            VectorKind(has_length=True),
-            Tier.LIGHT,
-            "The direction of the light, of any length; excludes an aim.",
-        ),
-    ] = None
-    aim: Annotated[
-        Vector | None,
-        Column(
-            VectorKind(),
-            Tier.LIGHT,
-            "The point at which the light is aimed; excludes a direction.",
-            WORLD_UNITS,
-        ),
-    ] = None
-    concentration: Annotated[
-        float,
-        Column(
-            Number(at_least=0),
-            Tier.LIGHT,
-            "C: the exponent of the cosine of the angle from the direction; exact to 1e-4 up to 100,000.",
-            bar=BarRange(0, 100, 1),
-        ),
-    ] = 0.0
-    cone_angle: Annotated[
-        float | None,
-        Column(
-            Number(at_least=0, at_most=180, above=True),
-            Tier.LIGHT,
-            "A: the largest angle from the direction that is lit; if absent, there is no cone.",
-            "degrees",
-            bar=BarRange(1, 90, 1),
-            start=30.0,
-        ),
-    ] = None
-    inner_angle: Annotated[
-        float | None,
-        Column(
-            Number(at_least=0, at_most=180),
-            Tier.LIGHT,
-            "The angle of full light inside the cone; if absent, the cone is sharp. Edges are exact to 1e-4"
-            " from 0.1 degrees on.",
-            "degrees",
-            bar=BarRange(0, 90, 1),
-            start=0.0,
-        ),
-    ] = field(default=None, kw_only=True)
-    flaps: Annotated[
-        Flaps, Column(Nested(Flaps), Tier.LIGHT, "The ranges of object coordinates that are lit.")
-    ] = field(default_factory=Flaps)
-    half_spaces: Annotated[
-        tuple[HalfSpace, ...],
-        Column(NamedRows(HalfSpace), Tier.LIGHT, "Flaps along any planes, by name."),
-    ] = ()
-    falloff: Annotated[
-        str,
-        Column(
-            OneOf(FALLOFFS), Tier.LIGHT, "How the light decreases with the distance, to nothing at its reach."
-        ),
-    ] = "none"
-    reach: Annotated[
-        float | None,
-        Column(
-            Number(at_least=0, above=True),
-            Tier.LIGHT,
-            "The distance at which a light with falloff ends.",
-            WORLD_UNITS,
-        ),
-    ] = None
-    at_infinity: Annotated[
-        bool,
-        Column(Boolean(), Tier.LIGHT, "Whether its rays are parallel, as if it were infinitely far away."),
-    ] = False
-    follows: Annotated[
-        str | None,
-        Column(
-            Reference("lights", EYE),
-            Tier.LIGHT,
-            "What it moves with: 'eye', or another light's name for the aim of that light.",
-        ),
-    ] = None
-    links: Annotated[
-        Links, Column(Nested(Links, inline=True), Tier.LIGHT, "The surfaces and parts that it shines on.")
-    ] = field(default_factory=Links)
+    name: str = text(tier=Tier.LIGHT, help="The name of the light, which must be unique.")
+    position: Vector = coordinates(tier=Tier.LIGHT, help="The position of the light.")
+    intensity: float = number(
+        default=1.0,
+        at_least=0,
+        bar=BarRange(0, 2, 0.01),
+        tier=Tier.MIX,
+        help="The intensity of the light, without an upper limit.",
+    )
+    on: bool = boolean(default=True, tier=Tier.MIX, help="Whether the light is switched on.")
+    direction: Vector | None = vector(
+        default=None, tier=Tier.LIGHT, help="The direction of the light, of any length; excludes an aim."
+    )
+    aim: Vector | None = coordinates(
+        default=None, tier=Tier.LIGHT, help="The point at which the light is aimed; excludes a direction."
+    )
+    concentration: float = number(
+        default=0.0,
+        at_least=0,
+        bar=BarRange(0, 100, 1),
+        tier=Tier.LIGHT,
+        help="C: the exponent of the cosine of the angle from the direction; exact to 1e-4 up to 100,000.",
+    )
+    cone_angle: float | None = number(
+        default=None,
+        at_least=0,
+        at_most=180,
+        above=True,
+        unit="degrees",
+        bar=BarRange(1, 90, 1),
+        start=30.0,
+        tier=Tier.LIGHT,
+        help="A: the largest angle from the direction that is lit; if absent, there is no cone.",
+    )
+    inner_angle: float | None = number(
+        default=None,
+        at_least=0,
+        at_most=180,
+        unit="degrees",
+        bar=BarRange(0, 90, 1),
+        start=0.0,
+        tier=Tier.LIGHT,
+        help="The angle of full light inside the cone; if absent, the cone is sharp. Edges are exact to 1e-4"
+        " from 0.1 degrees on.",
+    )
+    flaps: Flaps = nested(
+        Flaps, default=Flaps(), tier=Tier.LIGHT, help="The ranges of object coordinates that are lit."
+    )
+    half_spaces: tuple[HalfSpace, ...] = column_of(
+        NamedRows(HalfSpace), default=(), tier=Tier.LIGHT, help="Flaps along any planes, by name."
+    )
+    falloff: str = one_of(
+        FALLOFFS,
+        default="none",
+        tier=Tier.LIGHT,
+        help="How the light decreases with the distance, to nothing at its reach.",
+    )
+    reach: float | None = number(
+        default=None,
+        at_least=0,
+        above=True,
+        unit=WORLD_UNITS,
+        tier=Tier.LIGHT,
+        help="The distance at which a light with falloff ends.",
+    )
+    at_infinity: bool = boolean(
+        default=False,
+        tier=Tier.LIGHT,
+        help="Whether its rays are parallel, as if it were infinitely far away.",
+    )
+    follows: str | None = column_of(
+        Reference("lights", EYE),
+        default=None,
+        tier=Tier.LIGHT,
+        help="What it moves with: 'eye', or another light's name for the aim of that light.",
+    )
+    links: Links = nested(
+        Links, default=Links(), inline=True, tier=Tier.LIGHT, help="The surfaces and parts that it shines on."
+    )
 
     def rules(self) -> Iterator[Problem]:
         """At most one of direction and aim is given; without both, no control in AXIS_CONTROLS.

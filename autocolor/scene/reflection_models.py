@@ -20,16 +20,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import combinations
-from typing import Annotated, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 
 from autocolor.arrays import Real, RealArray, power
-from autocolor.scene.columns import BarRange, Column, Problem, Row, Tier
-from autocolor.scene.kinds import AngleCurve, AngleCurveKind, Number
-from autocolor.scene.row_kinds import Nested
+from autocolor.scene.columns import BarRange, Problem, Row, Tier, column_of
+from autocolor.scene.kinds import AngleCurve, AngleCurveKind, number
+from autocolor.scene.row_kinds import nested, table_row
 
 
 class ReflectionModel(Row):
@@ -65,7 +64,7 @@ START_CURVE: Final = ((0.0, 0.04), (50.0, 0.06), (70.0, 0.17), (80.0, 0.39), (90
 """The initial curve: the reflectance of glass, whose refractive index is 1.5."""
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class SpecularGrowth(Row):
     """How S grows with the angle of incidence I: a factor of the specular plane, 1 at normal incidence.
 
@@ -86,34 +85,30 @@ class SpecularGrowth(Row):
         ("fresnel_curve",),
     )
 
-    base_reflectance: Annotated[
-        float | None,
-        Column(
-            Number(LEAST_REFLECTANCE, 1),
-            Tier.LIGHT,
-            "F0: the share reflected at normal incidence; the smaller, the more S grows.",
-            bar=BarRange(0.01, 1, 0.01),
-            start=0.04,
-        ),
-    ] = None
-    refractive_index: Annotated[
-        float | None,
-        Column(
-            Number(LEAST_INDEX, 10),
-            Tier.LIGHT,
-            "The refractive index, which determines F0: S grows with the angle of incidence.",
-            bar=BarRange(1.1, 4, 0.01),
-            start=1.5,
-        ),
-    ] = None
-    fresnel_curve: Annotated[
-        AngleCurve | None,
-        Column(
-            AngleCurveKind(LEAST_REFLECTANCE, START_CURVE),
-            Tier.LIGHT,
-            "Points [angle in degrees, reflected share]; S grows with the share.",
-        ),
-    ] = None
+    base_reflectance: float | None = number(
+        default=None,
+        at_least=LEAST_REFLECTANCE,
+        at_most=1,
+        bar=BarRange(0.01, 1, 0.01),
+        start=0.04,
+        tier=Tier.LIGHT,
+        help="F0: the share reflected at normal incidence; the smaller, the more S grows.",
+    )
+    refractive_index: float | None = number(
+        default=None,
+        at_least=LEAST_INDEX,
+        at_most=10,
+        bar=BarRange(1.1, 4, 0.01),
+        start=1.5,
+        tier=Tier.LIGHT,
+        help="The refractive index, which determines F0: S grows with the angle of incidence.",
+    )
+    fresnel_curve: AngleCurve | None = column_of(
+        AngleCurveKind(LEAST_REFLECTANCE, START_CURVE),
+        default=None,
+        tier=Tier.LIGHT,
+        help="Points [angle in degrees, reflected share]; S grows with the share.",
+    )
 
     def rules(self) -> Iterator[Problem]:
         """At most one of the three columns is given."""
@@ -168,24 +163,25 @@ CONSTANT: Final = SpecularGrowth()
 """An S that does not depend on the angle of incidence."""
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class _PowerOfCosine(ReflectionModel):
     """The models that raise a cosine to N. S may grow with the angle of incidence."""
 
-    exponent: Annotated[
-        float,
-        Column(
-            Number(at_least=0),
-            Tier.LIGHT,
-            "N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 100,000.",
-            bar=BarRange(1, 200, 1),
-        ),
-    ] = 20.0
+    exponent: float = number(
+        default=20.0,
+        at_least=0,
+        bar=BarRange(1, 200, 1),
+        tier=Tier.LIGHT,
+        help="N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 100,000.",
+    )
 
-    growth: Annotated[
+    growth: SpecularGrowth = nested(
         SpecularGrowth,
-        Column(Nested(SpecularGrowth, inline=True), Tier.LIGHT, "How S grows with the angle of incidence."),
-    ] = CONSTANT
+        default=CONSTANT,
+        inline=True,
+        tier=Tier.LIGHT,
+        help="How S grows with the angle of incidence.",
+    )
 
     @property
     def largest(self) -> float:
@@ -203,7 +199,7 @@ class _PowerOfCosine(ReflectionModel):
         return factor if growth is None else np.multiply(factor, growth, out=factor)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Phong(_PowerOfCosine):
     """cos^N(E). Paper: Figure 2."""
 
@@ -214,7 +210,7 @@ class Phong(_PowerOfCosine):
         return self.grown(power(eye, self.exponent), incidence)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class BlinnPhong(_PowerOfCosine):
     """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
 
@@ -239,7 +235,7 @@ LEAST_SQUARE: Final = 1e-6
 """The least |L + V|^2, above the rounding of float32; only where L and V are opposite is it less."""
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class CookTorrance(ReflectionModel):
     """F D G / (N.V) over its value at normal incidence and view.
 
@@ -248,24 +244,22 @@ class CookTorrance(ReflectionModel):
     reflects `normal_reflectance`, F0, at normal incidence.
     """
 
-    roughness: Annotated[
-        float,
-        Column(
-            Number(0.01, 1),
-            Tier.LIGHT,
-            "The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.02.",
-            bar=BarRange(0.01, 1, 0.01),
-        ),
-    ] = 0.3
-    normal_reflectance: Annotated[
-        float,
-        Column(
-            Number(0.001, 1),
-            Tier.LIGHT,
-            "F0: the share reflected at normal incidence.",
-            bar=BarRange(0.01, 1, 0.01),
-        ),
-    ] = 0.05
+    roughness: float = number(
+        default=0.3,
+        at_least=0.01,
+        at_most=1,
+        bar=BarRange(0.01, 1, 0.01),
+        tier=Tier.LIGHT,
+        help="The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.02.",
+    )
+    normal_reflectance: float = number(
+        default=0.05,
+        at_least=0.001,
+        at_most=1,
+        bar=BarRange(0.01, 1, 0.01),
+        tier=Tier.LIGHT,
+        help="F0: the share reflected at normal incidence.",
+    )
 
     @property
     def largest(self) -> float:

@@ -11,33 +11,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from autocolor.checks import Vector, either
 from autocolor.errors import UsageError
-from autocolor.scene.columns import REFUSED, WORLD_UNITS, Column, Problem, Row, Tier, fields_of, replaced
+from autocolor.scene.columns import REFUSED, WORLD_UNITS, Problem, Row, Tier, column_of, fields_of, replaced
 from autocolor.scene.following import light_frame, moved_vectors
-from autocolor.scene.kinds import Number, VectorKind
+from autocolor.scene.kinds import Number, coordinates
 from autocolor.scene.lights import AXES, Flap, HalfSpace, Light, middle_between
-from autocolor.scene.row_kinds import RowList
+from autocolor.scene.row_kinds import RowList, table_row
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Rig(Row):
     """The lights of a scene, and the least and the largest coordinates of the object that they light."""
 
     noun: ClassVar[str] = "rig"
 
-    minimum: Annotated[
-        Vector, Column(VectorKind(), Tier.LIGHT, "The smallest coordinates of the object.", WORLD_UNITS)
-    ]
-    maximum: Annotated[
-        Vector, Column(VectorKind(), Tier.LIGHT, "The largest coordinates of the object.", WORLD_UNITS)
-    ]
-    lights: Annotated[tuple[Light, ...], Column(RowList(Light), Tier.MIX, "The lights.")] = ()
+    minimum: Vector = coordinates(tier=Tier.LIGHT, help="The smallest coordinates of the object.")
+    maximum: Vector = coordinates(tier=Tier.LIGHT, help="The largest coordinates of the object.")
+    lights: tuple[Light, ...] = column_of(RowList(Light), default=(), tier=Tier.MIX, help="The lights.")
 
     def rules(self) -> Iterator[Problem]:
         """No coordinate of the minimum is above that of the maximum."""
@@ -112,7 +107,7 @@ def _scaled_lengths(row: Row, scale: float) -> dict[str, float]:
     """The lengths of a row, which are in world units, by column, times a scale; None values are left out."""
     return {
         name: scale * vars(row)[name]
-        for name, (column, _, _) in fields_of(type(row)).items()
+        for name, column in fields_of(type(row)).items()
         if isinstance(column.kind, Number) and column.unit == WORLD_UNITS and vars(row)[name] is not None
     }
 

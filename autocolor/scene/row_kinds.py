@@ -1,84 +1,86 @@
-"""The kinds of columns whose values are rows, and of columns that refer to rows by name.
+"""The kinds of columns whose values are rows, and of columns that refer to rows by name; and row classes.
 
 A row inside a row is `Nested`, or `OneRowOf` several classes. A table of rows is a `RowList` or, inside
 another row, `NamedRows`. A column refers to rows of other tables by a `Reference`, `References` or
-`RangesByName`.
+`RangesByName`. `table_row` makes a row class.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Unpack, dataclass_transform, get_type_hints
 
 from autocolor.arrays import LARGEST_SINGLE
 from autocolor.checks import closest, either, listed, nearest, shown
 from autocolor.scene.columns import (
     REFUSED,
+    About,
     Column,
+    Default,
     Kind,
     Path,
     Problem,
     Row,
     RowError,
-    Tier,
+    RowKey,
+    SomeRow,
+    Value,
     cached_by_class,
-    cost,
+    column_of,
     difference,
-    fields_of,
     from_plain,
     keys_of,
+    refused,
     replaced,
     to_plain,
 )
-from autocolor.scene.kinds import Number, Text, require
+from autocolor.scene.kinds import (
+    Number,
+    Text,
+    boolean,
+    color,
+    coordinates,
+    number,
+    one_of,
+    require,
+    text,
+    vector,
+)
 
 MOST_ROWS: Final = 1_000_000
 """Limit: rows of a table."""
 
 
 @dataclass(frozen=True)
-class Nested(Kind):
+class Nested(Kind[SomeRow]):
     """A row of another class. With `inline`, files write its keys among the keys of the containing row."""
 
-    row_class: type[Row]
+    row_class: type[SomeRow]
     inline: bool = False
 
     def rule(self) -> str:
-        return f"must be a table of {listed(keys_of(self.row_class))}"
-
-    def accepts(self) -> str:
-        return f"Row | {self.row_class.__name__}Changes"
-
-    @property
-    def has_keys_inside(self) -> bool:
-        return self.inline
+        name, keys = self.row_class.__name__, listed(keys_of(self.row_class))
+        return f"must be a {name}" if self.inline else f"must be a table of {keys}"
 
     def keys(self, name: str, column: Column) -> Mapping[str, Column]:
         if not self.inline:
             return {name: column}
         return {key: inner.column for key, inner in keys_of(self.row_class).items()}
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         if isinstance(value, self.row_class):
             return value
         if isinstance(value, Mapping):
-            try:
-                return from_plain(self.row_class, value)
-            except RowError as error:
-                return _refused(error, self._path(path), problems)
-        rule = f"must be a {self.row_class.__name__}" if self.inline else self.rule()
-        problems.append(Problem(path, f"{rule}, not {shown(value)}"))
-        return REFUSED
+            return _inside(path[:-1] if self.inline else path, problems, from_plain, self.row_class, value)
+        return refused(problems, path, f"{self.rule()}, not {shown(value)}")
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         if isinstance(present, self.row_class):
-            try:
-                return replaced(present, table)
-            except RowError as error:
-                return _refused(error, self._path(path), problems)
+            return _inside(path[:-1] if self.inline else path, problems, replaced, present, table)
         # Make a new row in place of an absent or an invalid row; `validated` refuses any other value later.
         is_new = present is REFUSED or (present is None and not self.inline)
         return self.validated(table, path, problems) if is_new else present
@@ -90,28 +92,19 @@ class Nested(Kind):
         changes = difference(one, other)
         return changes if self.inline or not changes else {name: changes}
 
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        return own if one is None or other is None else cost(one, other)
 
-    def between(self, one: Row, other: Row, share: float) -> Row:
-        return one.between(other, share)
-
-    def _path(self, path: Path) -> Path:
-        return path[:-1] if self.inline else path
+def nested(
+    row_class: type[SomeRow], *, inline: bool = False, **about: Unpack[About[Default]]
+) -> SomeRow | Default:
+    """A field of rows of another class; see `Nested`."""
+    return column_of(Nested(row_class, inline), **about)
 
 
 @dataclass(frozen=True, eq=False)
-class OneRowOf(Kind):
+class OneRowOf(Kind[SomeRow]):
     """A row of one of several classes, chosen by name; files write the name and the keys inline."""
 
-    classes: Mapping[str, type[Row]]
-
-    @property
-    def has_keys_inside(self) -> bool:
-        return True
-
-    def accepts(self) -> str:
-        return "str | Row"
+    classes: Mapping[str, type[SomeRow]]
 
     def rule(self) -> str:
         return f"must be {either(self.classes)}"
@@ -124,37 +117,26 @@ class OneRowOf(Kind):
         inner = {key: at.column for cls in self.classes.values() for key, at in keys_of(cls).items()}
         return {name: column, **inner}
 
-    def accepted(self, value: Any) -> Row:
-        if type(value) in self.classes.values():
-            row: Row = value
-            return row
-        require(isinstance(value, str) and value in self.classes)
-        return self.classes[value]()
+    def accepted(self, value: Any) -> Any:
+        require(type(value) in self.classes.values() or (isinstance(value, str) and value in self.classes))
+        return self.classes[value]() if isinstance(value, str) else value
 
     def advice(self, value: object) -> str:
         return closest(value, self.classes) if isinstance(value, str) else ""
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
-        name = path[-1]
-        value = self.validated(table[str(name)], path, problems) if name in table else present
-        if not isinstance(value, Row):
+        name, value = path[-1], self.validated(present, path, problems)
+        if value is REFUSED:
             return value
-        own = keys_of(type(value))
-        keys = {key: inner for key, inner in table.items() if key != name}
-        for key in [key for key in keys if key not in own]:
-            owners = [repr(other) for other, cls in self.classes.items() if key in keys_of(cls)]
-            problems.append(
-                Problem(
-                    (*path[:-1], key),
-                    f"must go with {name} = {' or '.join(owners)}, not with {self.name_of(value)!r};"
-                    f" leave it out, or change the {name}",
-                )
-            )
-            del keys[key]
-        try:
-            return replaced(value, keys) if keys else value
-        except RowError as error:
-            return _refused(error, path[:-1], problems)
+        keys = dict(table)
+        for key in table:
+            owners = [other for other, cls in self.classes.items() if key in keys_of(cls)]
+            if owners and self.name_of(value) not in owners:
+                names = " or ".join(map(repr, owners))
+                rule = f"must go with {name} = {names}, not with {self.name_of(value)!r}"
+                refused(problems, (*path[:-1], key), f"{rule}; leave it out, or change the {name}")
+                del keys[key]
+        return _inside(path[:-1], problems, replaced, value, keys)
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: self.name_of(value), **to_plain(value)}
@@ -162,171 +144,120 @@ class OneRowOf(Kind):
     def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
         return difference(one, other) if type(one) is type(other) else self.to_plain(name, other)
 
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        return cost(one, other, own)
-
-    def between(self, one: Row, other: Row, share: float) -> Row:
-        return one.between(other, share)
-
 
 @dataclass(frozen=True)
-class RowList(Kind):
+class RowList(Kind[tuple[SomeRow, ...]]):
     """A table: rows of a class with unique names; scene files write them `by_name` or as an array."""
 
-    row_class: type[Row]
+    row_class: type[SomeRow]
     by_name: bool = False
-
-    def accepts(self) -> str:
-        return "Sequence[Row]"
 
     def rule(self) -> str:
         return f"must be a list of {self.row_class.__name__} rows"
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         if not isinstance(value, (list, tuple)) or len(value) > MOST_ROWS:
-            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}"))
-            return REFUSED
+            return refused(problems, path, f"{self.rule()}, not {shown(value)}")
         nested = Nested(self.row_class)
         rows = tuple(
-            row if type(row) is self.row_class else nested.validated(row, (*path, number), problems)
-            for number, row in enumerate(value)
+            row if type(row) is self.row_class else nested.validated(row, (*path, place), problems)
+            for place, row in enumerate(value)
         )
         first: dict[str, int] = {}
-        for number, row in enumerate(value):
+        for place, row in enumerate(value):
             name = row.get("name") if isinstance(row, Mapping) else getattr(row, "name", None)
-            if isinstance(name, str) and first.setdefault(name, number) != number:
+            if isinstance(name, str) and first.setdefault(name, place) != place:
                 text = f"must be unique, not the same as {path[-1]}[{first[name] + 1}]; rename it"
-                problems.append(Problem((*path, number, "name"), text))
+                refused(problems, (*path, place, "name"), text)
         return REFUSED if any(row is REFUSED for row in rows) else rows
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: [to_plain(row) for row in value]}
 
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        costs = _cost_of_rows(one, other) if len(one) == len(other) else own
-        # No edit of a table costs anything if the table is not rendered.
-        return own if costs is not None and own is Tier.NOTHING else costs
 
-    def between(self, one: Any, other: Any, share: float) -> Any:
-        return _rows_between(one, other, share)
-
-
-def _rows_between(ones: Sequence[Any], others: Sequence[Any], share: float) -> Sequence[Row]:
-    """The rows between two tables with the same names; tables with other names hold."""
-    if [row.name for row in ones] != [row.name for row in others]:
-        return ones
-    return tuple(one.between(other, share) for one, other in zip(ones, others, strict=True))
-
-
-def _cost_of_rows(ones: Sequence[Row], others: Sequence[Row]) -> Tier | None:
-    """The largest cost of an edit from a row to its counterpart; None if all rows are equal."""
-    pairs = zip(ones, others, strict=True)
-    costs = [cost(one, other) for one, other in pairs if one is not other]
-    return max((tier for tier in costs if tier is not None), default=None)
-
-
-def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
-    """Append the problems of a row inside another, with the path to that row, and return REFUSED."""
-    problems.extend(problem.under(path) for problem in error.row_problems)
-    return REFUSED
+def _inside(path: Path, problems: list[Problem], make: Callable[..., Row], *arguments: object) -> Any:
+    """The row that a function makes; REFUSED, with its problems appended under a path, if it is invalid."""
+    try:
+        return make(*arguments)
+    except RowError as error:
+        problems.extend(problem.under(path) for problem in error.row_problems)
+        return REFUSED
 
 
 # References to rows of other tables, by name.
 
 
 @dataclass(frozen=True)
-class Referring(Kind):
-    """References to rows of another table, by name. The scene checks that these rows exist."""
+class Referring(Kind[Value]):
+    """References to rows of another table, by name, or by a `word`. The scene checks that the rows exist."""
 
     table: str
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """The words that are valid instead of a name."""
-        return ()
-
-    def names_in(self, value: Any) -> Sequence[str]:
-        """The names that a value refers to."""
-        raise NotImplementedError
-
-
-@dataclass(frozen=True)
-class Reference(Referring):
-    """The name of a row of another table, or `word`, if that is not empty."""
-
     word: str = ""
 
     @property
     def words(self) -> tuple[str, ...]:
+        """The words that are valid instead of a name."""
         return (self.word,) if self.word else ()
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        """The names that a value refers to."""
+        names = (value,) if isinstance(value, str) else value
+        return [name for name in names if name != self.word]
+
+
+@dataclass(frozen=True)
+class Reference(Referring[str]):
+    """The name of a row of another table, or `word`, if that is not empty."""
 
     def rule(self) -> str:
         noun = self.table.removesuffix("s")
         return f"must be {self.word!r} or the name of a {noun}" if self.word else Text().rule()
 
-    def accepts(self) -> str:
-        return "str"
-
     def accepted(self, value: Any) -> str:
         return Text().accepted(value)
 
-    def names_in(self, value: Any) -> Sequence[str]:
-        return () if value == self.word else (value,)
-
 
 @dataclass(frozen=True)
-class References(Referring):
+class References(Referring[tuple[str, ...]]):
     """A list of names of rows of another table."""
 
     def rule(self) -> str:
         return "must be a list of names"
 
-    def accepts(self) -> str:
-        return "Sequence[str]"
-
     def accepted(self, value: Any) -> tuple[str, ...]:
         require(isinstance(value, (list, tuple)))
         return tuple(Text().accepted(name) for name in value)
-
-    def names_in(self, value: Any) -> Sequence[str]:
-        return tuple(value)
 
 
 PERCENTAGE: Final = re.compile(r"([0-9]{2,3}(?:\.[0-9]{1,2})?) ?%")
 LEAST_PERCENT: Final = 50
 """Limit: the lowest percentage. A lower percentage would show most of a picture at one level."""
 
+RangesOrWord = str | tuple[tuple[str, tuple[float, float]], ...]
+
 
 @dataclass(frozen=True)
-class RangesByName(Referring):
+class RangesByName(Referring[RangesOrWord]):
     """The word `none`, a percentage, or ranges [minimum, maximum] by the names of rows.
 
-    The value is the word, the percentage as text such as "99.5 %", or pairs (name, range). The name `others`
+    The value is the word, the percentage as text such as "99.5 %", or pairs (name, range). The name `word`
     stands for all further rows. 0 <= minimum < maximum.
     """
 
-    none: str
-    others: str
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        return (self.others,)
+    none: str = "none"
 
     def rule(self) -> str:
         return (
             f"must be {self.none!r}, a percentage such as '99.5 %' from {LEAST_PERCENT} to 100, or a table of"
-            f" ranges [minimum, maximum] from 0 to 3.4e38 by the names of {self.table} and {self.others!r}"
+            f" ranges [minimum, maximum] from 0 to 3.4e38 by the names of {self.table} and {self.word!r}"
         )
 
-    def accepts(self) -> str:
-        return "str | Mapping[str, Sequence[float]] | Sequence[tuple[str, Sequence[float]]]"
-
-    def accepted(self, value: Any) -> str | tuple[tuple[str, tuple[float, float]], ...]:
+    def accepted(self, value: Any) -> RangesOrWord:
         if isinstance(value, str):
             percent = PERCENTAGE.fullmatch(value)
-            require(value == self.none or percent is not None)
             if percent is None:
-                return self.none
+                require(value == self.none)
+                return value
             require(LEAST_PERCENT <= float(percent[1]) <= 100)
             return f"{float(percent[1]):g} %"
         pairs = list(value.items()) if isinstance(value, Mapping) else list(value)
@@ -335,50 +266,21 @@ class RangesByName(Referring):
             (Text().accepted(name), (intensity(minimum), intensity(maximum)))
             for name, (minimum, maximum) in pairs
         )
-        names = [name for name, _ in ranges]
-        require(len(ranges) > 0 and len(set(names)) == len(names))
+        require(len(ranges) > 0 and len(dict(ranges)) == len(ranges))
         require(all(low < high for _, (low, high) in ranges))
         return ranges
 
     def names_in(self, value: Any) -> Sequence[str]:
-        return () if isinstance(value, str) else [name for name, _ in value if name != self.others]
+        return () if isinstance(value, str) else super().names_in(name for name, _ in value)
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else {key: list(limits) for key, limits in value}}
 
-    def between(self, one: Any, other: Any, share: float) -> Any:
-        """Fixed ranges are interpolated if both values name the same rows in the same order."""
-        if isinstance(one, str) or isinstance(other, str) or [*dict(one)] != [*dict(other)]:
-            return one
-        return super().between(one, other, share)
-
-
-class ReferenceAt(NamedTuple):
-    """A column that refers to other rows: its kind, and the names of the fields from a row to its value."""
-
-    kind: Referring
-    path: tuple[str, ...]
-
-    def value_in(self, row: Row) -> Any:
-        """The value in a row, which may be None or REFUSED."""
-        value: Any = row
-        for name in self.path:
-            value = vars(value)[name] if isinstance(value, Row) else REFUSED
-        return value
-
 
 @cached_by_class
-def references_of(cls: type[Row]) -> Mapping[str, ReferenceAt]:
-    """The columns of a row class that refer to rows of other tables, by key."""
-    references: dict[str, ReferenceAt] = {}
-    for name, field in fields_of(cls).items():
-        kind = field.column.kind
-        if isinstance(kind, Referring):
-            references[name] = ReferenceAt(kind, (name,))
-        elif isinstance(kind, Nested) and kind.inline:
-            inner = references_of(kind.row_class)
-            references |= {key: at._replace(path=(name, *at.path)) for key, at in inner.items()}
-    return references
+def references_of(cls: type[Row]) -> Mapping[str, RowKey]:
+    """The keys of a row class whose columns refer to rows of other tables."""
+    return {key: at for key, at in keys_of(cls).items() if isinstance(at.column.kind, Referring)}
 
 
 # Rows by name inside another row.
@@ -386,84 +288,69 @@ def references_of(cls: type[Row]) -> Mapping[str, ReferenceAt]:
 MOST_NAMED_ROWS: Final = 64
 """Limit: rows inside another row. A screen hardly has room for more."""
 
+FEW: Final = f"must be at most {MOST_NAMED_ROWS}, not {{:,}}; leave some out"
+
 
 @dataclass(frozen=True)
-class NamedRows(Kind):
+class NamedRows(Kind[tuple[SomeRow, ...]]):
     """Rows of a class with unique names, inside another row, sorted by name.
 
     Files and changes write a table of tables by name. A change replaces keys of an existing row, which the
     key `name` renames; an unknown name adds a row; None removes a row.
     """
 
-    row_class: type[Row]
-
-    def accepts(self) -> str:
-        name = self.row_class.__name__
-        return f"Mapping[str, Row | {name}Changes | None] | Sequence[Row]"
+    row_class: type[SomeRow]
 
     def rule(self) -> str:
         return f"must be a table of {self.row_class.noun}s by name"
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         if isinstance(value, Mapping):
             return self.replaced((), value, path, problems)
         if not isinstance(value, (list, tuple)) or not all(type(row) is self.row_class for row in value):
-            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}"))
-            return REFUSED
-        if not self._are_few(len(value), MOST_NAMED_ROWS, path, problems):
-            return REFUSED
+            return refused(problems, path, f"{self.rule()}, not {shown(value)}")
+        if len(value) > MOST_NAMED_ROWS:
+            return refused(problems, path, FEW.format(len(value)))
         rows: list[Any] = sorted(value, key=lambda row: row.name)
         repeated = dict.fromkeys(one.name for one, other in pairwise(rows) if one.name == other.name)
         for name in repeated:
-            problems.append(Problem((*path, name), "must be unique, not repeated; rename one of them"))
+            refused(problems, (*path, name), "must be unique, not repeated; rename one of them")
         return REFUSED if repeated else tuple(rows)
 
     def replaced(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         rows = {row.name: row for row in present} if isinstance(present, tuple) else {}
         # A change may replace every row: remove MOST_NAMED_ROWS, and add as many.
-        if not self._are_few(len(table), 2 * MOST_NAMED_ROWS, path, problems):
-            return REFUSED
+        if len(table) > 2 * MOST_NAMED_ROWS:
+            return refused(problems, path, FEW.format(len(table)))
         for name, given in table.items():
-            if not isinstance(name, str) or not name:
-                text = f"{self.rule()}, not by {shown(name)}; name it by at least one character"
-                problems.append(Problem(path, text))
-                rows[name] = REFUSED
-            elif given is None and name in rows:
-                del rows[name]
-            elif given is None:
-                advice = nearest(name, rows) or "; leave it out"
-                text = f"there is no {self.row_class.noun} of this name{advice}"
-                problems.append(Problem((*path, name), text))
-                rows[name] = REFUSED
-            elif name in rows and isinstance(given, Mapping):
-                rows[name] = Nested(self.row_class).replaced(rows[name], given, (*path, name), problems)
-            else:
-                rows[name] = self._new(name, given, (*path, name), problems)
+            rows[name] = self._changed(rows, name, given, path, problems)
         if any(row is REFUSED for row in rows.values()):
             return REFUSED
-        return self.validated(tuple(rows.values()), path, problems)
+        return self.validated([row for row in rows.values() if row is not None], path, problems)
 
-    def _new(self, name: str, given: object, path: Path, problems: list[Problem]) -> object:
-        """The row for a table of keys, or a row itself; REFUSED if it is invalid or has another name."""
+    def _changed(
+        self, rows: Mapping[str, Any], name: object, given: object, path: Path, problems: list[Problem]
+    ) -> Any:
+        """The row of a name after a change: of keys of it, to another row, or to None."""
+        if not isinstance(name, str) or not name:
+            text = f"{self.rule()}, not by {shown(name)}; name it by at least one character"
+            return refused(problems, path, text)
+        path, nested = (*path, name), Nested(self.row_class)
+        if given is None and rows.get(name) is None:
+            advice = nearest(name, rows) or "; leave it out"
+            return refused(problems, path, f"there is no {self.row_class.noun} of this name{advice}")
+        if given is None:
+            return None
+        if name in rows and isinstance(given, Mapping):
+            return nested.replaced(rows[name], given, path, problems)
         if not isinstance(given, (Mapping, self.row_class)):
             keys = [key for key in keys_of(self.row_class) if key != "name"]
-            problems.append(Problem(path, f"must be a table of {listed(keys)}, not {shown(given)}"))
-            return REFUSED
-        own = given.get("name", name) if isinstance(given, Mapping) else vars(given)["name"]
-        if own != name:
-            text = f"must be the name of its table, {shown(name)}, not {shown(own)}; leave it out"
-            problems.append(Problem((*path, "name"), text))
-            return REFUSED
-        new = {**given, "name": name} if isinstance(given, Mapping) else given
-        return Nested(self.row_class).validated(new, path, problems)
-
-    def _are_few(self, count: int, most: int, path: Path, problems: list[Problem]) -> bool:
-        """Whether a number of rows is within a limit; if not, a problem is appended."""
-        if count > most:
-            problems.append(
-                Problem(path, f"must be at most {MOST_NAMED_ROWS}, not {count:,}; leave some out")
-            )
-        return count <= most
+            return refused(problems, path, f"must be a table of {listed(keys)}, not {shown(given)}")
+        new = {"name": name, **(given if isinstance(given, Mapping) else vars(given))}
+        if new["name"] != name:
+            text = f"must be the name of its table, {shown(name)}, not {shown(new['name'])}; leave it out"
+            return refused(problems, (*path, "name"), text)
+        return nested.validated(new, path, problems)
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: {row.name: without_name(to_plain(row)) for row in value} or None}
@@ -478,14 +365,21 @@ class NamedRows(Kind):
                 changes[key] = inner
         return {name: changes} if changes else {}
 
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        has_same_names = [row.name for row in one] == [row.name for row in other]
-        return _cost_of_rows(one, other) if has_same_names else own
-
-    def between(self, one: Any, other: Any, share: float) -> Any:
-        return _rows_between(one, other, share)
-
 
 def without_name(keys: Mapping[str, object]) -> dict[str, object]:
     """The keys of a row without `name`, which is the key of the row's table."""
     return {key: value for key, value in keys.items() if key != "name"}
+
+
+@dataclass_transform(
+    frozen_default=True,
+    field_specifiers=(column_of, number, boolean, text, coordinates, vector, one_of, color, nested),
+)
+def table_row(cls: type[SomeRow]) -> type[SomeRow]:
+    """The class as a frozen dataclass of columns, whose signature shows the types of their values.
+
+    The fields are made by `column_of`, or by a function for one kind, such as `number`.
+    """
+    made = dataclasses.dataclass(frozen=True, repr=False)(cls)
+    made.__init__.__annotations__ = {**get_type_hints(made.__init__), "return": None}
+    return made

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -16,34 +16,33 @@ from autocolor.checks import LARGEST_COORDINATE, Color, Vector, nearest, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
-from autocolor.scene.columns import BarRange, Column, Kind, Path, Problem, Row, Tier
+from autocolor.scene.columns import BarRange, Kind, Path, Problem, Row, Tier, column_of
 from autocolor.scene.kinds import (
     UNORDERED,
-    Boolean,
     ColorKind,
     ColorsKind,
     Number,
-    Text,
-    VectorKind,
     Whole,
+    boolean,
+    color,
     in_digits,
+    number,
     require,
+    text,
+    vector,
 )
-from autocolor.scene.row_kinds import References
+from autocolor.scene.row_kinds import References, table_row
 
 MOST_COLORS: Final = 256
 """Limit: colors of a scale."""
 
 
 @dataclass(frozen=True)
-class LimitsKind(Kind):
+class LimitsKind(Kind[tuple[float, float]]):
     """Two numbers within the range of float32, the second above the first."""
 
     def rule(self) -> str:
         return "must be two finite numbers, the second above the first"
-
-    def accepts(self) -> str:
-        return "Sequence[float]"
 
     def accepted(self, value: Any) -> tuple[float, float]:
         require(not isinstance(value, UNORDERED))
@@ -51,27 +50,18 @@ class LimitsKind(Kind):
         require(low < high)
         return low, high
 
-    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
-        return {name: list(value)}
-
 
 @dataclass(frozen=True)
-class PlaceKind(Kind):
+class PlaceKind(Kind[tuple[float, float]]):
     """Two numbers from 0 to 1."""
 
     def rule(self) -> str:
         return "must be two numbers from 0 to 1"
 
-    def accepts(self) -> str:
-        return "Sequence[float]"
-
     def accepted(self, value: Any) -> tuple[float, float]:
         require(not isinstance(value, UNORDERED))
         x, y = map(Number(at_least=0, at_most=1).accepted, value)
         return x, y
-
-    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
-        return {name: list(value)}
 
 
 @dataclass(frozen=True)
@@ -83,14 +73,11 @@ class EndColor(ColorKind):
 
 
 @dataclass(frozen=True)
-class ScaleKind(Kind):
+class ScaleKind(Kind[str | tuple[Color, ...]]):
     """The name of a color scale, or a list of at least two colors, also as a text with commas."""
 
     def rule(self) -> str:
         return "must be the name of a color scale, or a list of 2 to 256 colors"
-
-    def accepts(self) -> str:
-        return "str | Sequence[str | Sequence[int]]"
 
     def accepted(self, value: Any) -> str | tuple[Color, ...]:
         if isinstance(value, str):
@@ -98,7 +85,7 @@ class ScaleKind(Kind):
             return value
         return ColorsKind(MOST_COLORS).accepted(value)
 
-    def validated(self, value: object, path: Path, problems: list[Problem]) -> object:
+    def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         if isinstance(value, str) and "," in value:
             return ColorsKind(MOST_COLORS).validated(value, path, problems)
         return super().validated(value, path, problems)
@@ -112,11 +99,6 @@ class ScaleKind(Kind):
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}
 
-    def between(self, one: Any, other: Any, share: float) -> Any:
-        """Lists of colors are interpolated; names hold."""
-        is_named = isinstance(one, str) or isinstance(other, str)
-        return one if is_named else ColorsKind(MOST_COLORS).between(one, other, share)
-
 
 MOST_BANDS: Final = 256
 """Limit: bands, and levels of a band."""
@@ -124,97 +106,82 @@ MOST_BANDS: Final = 256
 UP: Final = (0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Scalar(Row):
     """The scalar that colors the surfaces, its limits, bands and colors."""
 
     noun: ClassVar[str] = "scalar"
 
-    name: Annotated[
-        str,
-        Column(Text(), Tier.MIX, "A scalar of the mesh, or a computed scalar such as 'mean curvature'."),
-    ]
-    limits: Annotated[
-        tuple[float, float] | None,
-        Column(
-            LimitsKind(),
-            Tier.LEVELS,
-            "The start of the first band and the end of the last; if absent, the scalar's range.",
-        ),
-    ] = None
-    scale: Annotated[
-        str | tuple[Color, ...],
-        Column(ScaleKind(), Tier.ENTRIES, "The color scale: a name, or a list of colors."),
-    ] = "viridis"
-    bands: Annotated[
-        int, Column(Whole(2, MOST_BANDS), Tier.LEVELS, "The number of colors.", bar=BarRange(2, 64, 1))
-    ] = 16
-    shades: Annotated[
-        int | None,
-        Column(
-            Whole(1, MOST_BANDS),
-            Tier.LEVELS,
-            "The levels of each color; 1 for flat color codes. If absent, as many as fit, at most 8.",
-            bar=BarRange(1, 16, 1),
-            start=8,
-        ),
-    ] = None
-    below: Annotated[
-        Color | None,
-        Column(
-            EndColor(),
-            Tier.ENTRIES,
-            "The color below the limits; if absent, the color of the first band.",
-        ),
-    ] = None
-    above: Annotated[
-        Color | None,
-        Column(
-            EndColor(),
-            Tier.ENTRIES,
-            "The color above the limits; if absent, the color of the last band.",
-        ),
-    ] = None
-    missing: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color of missing values.")] = (
-        128,
-        128,
-        128,
+    name: str = text(
+        tier=Tier.MIX, help="A scalar of the mesh, or a computed scalar such as 'mean curvature'."
     )
-    legend: Annotated[bool, Column(Boolean(), Tier.NOTHING, "Whether the display shows the legend.")] = True
-    legend_place: Annotated[
-        tuple[float, float] | None,
-        Column(
-            PlaceKind(),
-            Tier.NOTHING,
-            "The place of the legend from left to right and from top to bottom, 0 to 1; if absent, the corner"
-            " where it hides least.",
-        ),
-    ] = None
-    surfaces: Annotated[
-        tuple[str, ...] | None,
-        Column(
-            References("surfaces"),
-            Tier.LEVELS,
-            "The surfaces that it colors; if absent, the surfaces of all parts but stage parts.",
-        ),
-    ] = None
-    direction: Annotated[
-        Vector,
-        Column(
-            VectorKind(has_length=True),
-            Tier.MIX,
-            "The direction of distances, of the pull for draft angles, of up for slopes, or of stripes.",
-        ),
-    ] = UP
-    stripes: Annotated[
-        float,
-        Column(
-            Number(at_least=1, at_most=1000),
-            Tier.MIX,
-            "The number of zebra stripes in half a turn.",
-            bar=BarRange(1, 60, 1),
-        ),
-    ] = 12.0
+    limits: tuple[float, float] | None = column_of(
+        LimitsKind(),
+        default=None,
+        tier=Tier.LEVELS,
+        help="The start of the first band and the end of the last; if absent, the scalar's range.",
+    )
+    scale: str | tuple[Color, ...] = column_of(
+        ScaleKind(),
+        default="viridis",
+        tier=Tier.ENTRIES,
+        help="The color scale: a name, or a list of colors.",
+    )
+    bands: int = column_of(
+        Whole(2, MOST_BANDS),
+        default=16,
+        bar=BarRange(2, 64, 1),
+        tier=Tier.LEVELS,
+        help="The number of colors.",
+    )
+    shades: int | None = column_of(
+        Whole(1, MOST_BANDS),
+        default=None,
+        bar=BarRange(1, 16, 1),
+        start=8,
+        tier=Tier.LEVELS,
+        help="The levels of each color; 1 for flat color codes. If absent, as many as fit, at most 8.",
+    )
+    below: Color | None = column_of(
+        EndColor(),
+        default=None,
+        tier=Tier.ENTRIES,
+        help="The color below the limits; if absent, the color of the first band.",
+    )
+    above: Color | None = column_of(
+        EndColor(),
+        default=None,
+        tier=Tier.ENTRIES,
+        help="The color above the limits; if absent, the color of the last band.",
+    )
+    missing: Color = color(default=(128, 128, 128), tier=Tier.ENTRIES, help="The color of missing values.")
+    legend: bool = boolean(default=True, tier=Tier.NOTHING, help="Whether the display shows the legend.")
+    legend_place: tuple[float, float] | None = column_of(
+        PlaceKind(),
+        default=None,
+        tier=Tier.NOTHING,
+        help="The place of the legend from left to right and from top to bottom, 0 to 1; if absent, the"
+        " corner where it hides least.",
+    )
+    surfaces: tuple[str, ...] | None = column_of(
+        References("surfaces"),
+        default=None,
+        tier=Tier.LEVELS,
+        help="The surfaces that it colors; if absent, the surfaces of all parts but stage parts.",
+    )
+    direction: Vector = vector(
+        default=UP,
+        tier=Tier.MIX,
+        help="The direction of distances, of the pull for draft angles, of up for slopes, or of stripes.",
+    )
+    stripes: float = number(
+        default=12.0,
+        at_least=1,
+        at_most=1000,
+        bar=BarRange(1, 60, 1),
+        tier=Tier.MIX,
+        help="The number of zebra stripes in half a turn.",
+    )
 
 
 NODE: Final = "node"

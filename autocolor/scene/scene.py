@@ -7,10 +7,9 @@ cost of the edit is found by comparing the two scenes (see `Tier`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
-from typing import Annotated, Any, Final, TypeVar, Unpack
+from typing import Any, Final, TypeVar, Unpack
 
 from autocolor.arrays import Floats
 from autocolor.checks import Color, Vector, nearest, shown
@@ -29,11 +28,12 @@ from autocolor.scene.changes import (
 from autocolor.scene.columns import (
     REFUSED,
     BarRange,
-    Column,
     Problem,
     Row,
     RowError,
+    RowKey,
     Tier,
+    column_of,
     cost,
     fields_of,
     replaced,
@@ -53,11 +53,11 @@ from autocolor.scene.following import (
     vector_columns,
 )
 from autocolor.scene.in_1983 import changes_to_1983
-from autocolor.scene.kinds import ColorKind, CurveKind, Instance, Number, OneOf, Text
+from autocolor.scene.kinds import CurveKind, Instance, color, number, one_of, text
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
-from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, RowList, references_of
+from autocolor.scene.row_kinds import RangesByName, RowList, nested, references_of, table_row
 from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
@@ -91,7 +91,7 @@ MOST_PROBLEMS: Final = 100
 """Limit: problems of references in a message, and of lights that follow each other."""
 
 
-@dataclass(frozen=True, eq=False)
+@table_row
 class Scene(Row):
     """Everything needed to render and color a picture. `scene_of` makes a scene of a mesh.
 
@@ -99,113 +99,91 @@ class Scene(Row):
     surface table. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
     """
 
-    mesh: Annotated[Mesh, Column(Instance(Mesh), Tier.FRAME, "The node table and the polygon table.")]
-    parts: Annotated[
-        tuple[Part, ...],
-        Column(RowList(Part, by_name=True), Tier.FRAME, "The parts, which are groups of polygons."),
-    ]
-    surfaces: Annotated[
-        tuple[Surface, ...], Column(RowList(Surface, by_name=True), Tier.FRAME, "The surface types.")
-    ]
-    lights: Annotated[tuple[Light, ...], Column(RowList(Light), Tier.MIX, "The lights.")]
-    view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye position and the view direction.")]
-    ambient: Annotated[
-        float,
-        Column(
-            Number(at_least=0),
-            Tier.MIX,
-            "The intensity of every point without any light.",
-            bar=BarRange(0, 1, 0.01),
-        ),
-    ] = 0.1
-    scaling: Annotated[
-        str,
-        Column(
-            OneOf(SCALINGS),
-            Tier.LEVELS,
-            "Whether each surface has its own intensity range, or all surfaces share a range.",
-        ),
-    ] = "surface"
-    mapping: Annotated[
-        str | CurvePoints,
-        Column(CurveKind(CURVES), Tier.LEVELS, "How intensities are mapped to levels."),
-    ] = "linear"
-    contrast: Annotated[
-        str,
-        Column(
-            OneOf(CONTRASTS),
-            Tier.ENTRIES,
-            "Whether the lowest level is black, or in proportion to the minimum intensity.",
-        ),
-    ] = "stretch"
-    exposure: Annotated[
-        Exposure,
-        Column(
-            RangesByName("surfaces", AUTO, OBJECT),
-            Tier.LEVELS,
-            "Whether intensity ranges are automatic, of all pixels or a percentage without the brightest, or"
-            " fixed: by surface, and for all other surfaces.",
-            "intensity",
-        ),
-    ] = AUTO
-    dither: Annotated[
-        str,
-        Column(
-            OneOf(DITHERS),
-            Tier.LEVELS,
-            "Whether levels are rounded, or dithered by an ordered pattern.",
-        ),
-    ] = "off"
-    division: Annotated[
-        str,
-        Column(
-            OneOf(DIVISIONS),
-            Tier.LEVELS,
-            "Whether surfaces get more levels the more of the picture they cover, or all the same number.",
-        ),
-    ] = "covered"
-    words: Annotated[
-        str,
-        Column(
-            OneOf((LEVELS, NORMALS)),
-            Tier.LEVELS,
-            "Whether words stand for levels, or for normals: lights then change entries only.",
-        ),
-    ] = LEVELS
-    interpolation: Annotated[
-        str,
-        Column(
-            OneOf(INTERPOLATIONS),
-            Tier.FRAME,
-            "Whether normals are interpolated along scan lines on the surface, in quads as two triangles,"
-            " unchanged as the camera rolls, or along scan lines in the picture, as in 1983.",
-        ),
-    ] = SCAN_LINE
-    background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
-        0,
-        0,
-        0,
+    mesh: Mesh = column_of(Instance(Mesh), tier=Tier.FRAME, help="The node table and the polygon table.")
+    parts: tuple[Part, ...] = column_of(
+        RowList(Part, by_name=True), tier=Tier.FRAME, help="The parts, which are groups of polygons."
     )
-    front: Annotated[
-        str | None,
-        Column(
-            OneOf(FRONTS),
-            Tier.NOTHING,
-            "The axis toward which the object faces; it names the views from the sides.",
-        ),
-    ] = None
-    views: Annotated[
-        tuple[NamedView, ...],
-        Column(RowList(NamedView), Tier.NOTHING, "The named views, which can become the view."),
-    ] = ()
-    scalar: Annotated[
-        Scalar | None,
-        Column(Nested(Scalar), Tier.MIX, "The scalar that colors the surfaces, if any."),
-    ] = None
-    name: Annotated[
-        str,
-        Column(Text(may_be_empty=True), Tier.NOTHING, "The name of the scene, from its folder or file."),
-    ] = "scene"
+    surfaces: tuple[Surface, ...] = column_of(
+        RowList(Surface, by_name=True), tier=Tier.FRAME, help="The surface types."
+    )
+    lights: tuple[Light, ...] = column_of(RowList(Light), tier=Tier.MIX, help="The lights.")
+    view: View = nested(View, tier=Tier.FRAME, help="The eye position and the view direction.")
+    ambient: float = number(
+        default=0.1,
+        at_least=0,
+        bar=BarRange(0, 1, 0.01),
+        tier=Tier.MIX,
+        help="The intensity of every point without any light.",
+    )
+    scaling: str = one_of(
+        SCALINGS,
+        default="surface",
+        tier=Tier.LEVELS,
+        help="Whether each surface has its own intensity range, or all surfaces share a range.",
+    )
+    mapping: str | CurvePoints = column_of(
+        CurveKind(CURVES), default="linear", tier=Tier.LEVELS, help="How intensities are mapped to levels."
+    )
+    contrast: str = one_of(
+        CONTRASTS,
+        default="stretch",
+        tier=Tier.ENTRIES,
+        help="Whether the lowest level is black, or in proportion to the minimum intensity.",
+    )
+    exposure: Exposure = column_of(
+        RangesByName("surfaces", OBJECT, AUTO),
+        default=AUTO,
+        unit="intensity",
+        tier=Tier.LEVELS,
+        help="Whether intensity ranges are automatic, of all pixels or a percentage without the brightest, or"
+        " fixed: by surface, and for all other surfaces.",
+    )
+    dither: str = one_of(
+        DITHERS,
+        default="off",
+        tier=Tier.LEVELS,
+        help="Whether levels are rounded, or dithered by an ordered pattern.",
+    )
+    division: str = one_of(
+        DIVISIONS,
+        default="covered",
+        tier=Tier.LEVELS,
+        help="Whether surfaces get more levels the more of the picture they cover, or all the same number.",
+    )
+    words: str = one_of(
+        (LEVELS, NORMALS),
+        default=LEVELS,
+        tier=Tier.LEVELS,
+        help="Whether words stand for levels, or for normals: lights then change entries only.",
+    )
+    interpolation: str = one_of(
+        INTERPOLATIONS,
+        default=SCAN_LINE,
+        tier=Tier.FRAME,
+        help="Whether normals are interpolated along scan lines on the surface, in quads as two triangles,"
+        " unchanged as the camera rolls, or along scan lines in the picture, as in 1983.",
+    )
+    background: Color = color(
+        default=(0, 0, 0), tier=Tier.ENTRIES, help="The color where nothing is visible."
+    )
+    front: str | None = one_of(
+        FRONTS,
+        default=None,
+        tier=Tier.NOTHING,
+        help="The axis toward which the object faces; it names the views from the sides.",
+    )
+    views: tuple[NamedView, ...] = column_of(
+        RowList(NamedView), default=(), tier=Tier.NOTHING, help="The named views, which can become the view."
+    )
+    scalar: Scalar | None = nested(
+        Scalar, default=None, tier=Tier.MIX, help="The scalar that colors the surfaces, if any."
+    )
+    name: str = text(
+        default="scene",
+        may_be_empty=True,
+        tier=Tier.NOTHING,
+        help="The name of the scene, from its folder or file.",
+    )
 
     def rules(self) -> Iterator[Problem]:
         """The parts match the mesh, all references are valid, and there are few enough surfaces and views.
@@ -239,17 +217,21 @@ class Scene(Row):
     def _reference_problems(self) -> Iterator[Problem]:
         """The problems of references to rows that are not in their tables."""
         tables: list[tuple[type[Row], Sequence[Row]]] = [(Scene, (self,))]
-        for table, field in fields_of(Scene).items():
-            kind, rows = field.column.kind, vars(self)[table]
-            if isinstance(kind, RowList) and rows is not REFUSED:
-                tables.append((kind.row_class, rows))
+        for table, column in fields_of(Scene).items():
+            rows = vars(self)[table]
+            if isinstance(column.kind, RowList) and rows is not REFUSED:
+                tables.append((column.kind.row_class, rows))
         if isinstance(self.scalar, Scalar):
             tables.append((Scalar, (self.scalar,)))
         for row_class, rows in tables:
-            for key, reference in references_of(row_class).items():
-                others = vars(self)[reference.kind.table]
+            for key, at in references_of(row_class).items():
+                kind: Any = at.column.kind
+                others = vars(self)[kind.table]
                 if others is not REFUSED:
-                    yield from _missing_names(rows, key, reference, [row.name for row in others])
+                    yield from _missing_names(rows, key, at, [row.name for row in others])
+
+    # A scene is equal to itself only; `equals` compares the columns.
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     def replace(self, /, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
@@ -463,8 +445,7 @@ class Scene(Row):
         # A light must keep the aim that another light follows. Cached properties depend on the parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
         is_referring = any(
-            key in changes or reference.path[0] in changes
-            for key, reference in references_of(type(row)).items()
+            key in changes or at.field in changes for key, at in references_of(type(row)).items()
         )
         if table == "parts" or "name" in changes or is_referring or is_followed:
             return replaced(self, {table: rows})
@@ -497,18 +478,19 @@ class Scene(Row):
         return f"Scene({self.name!r}: {self.mesh!r}, {counts})"
 
 
-def _missing_names(
-    rows: Sequence[Row], key: str, reference: ReferenceAt, names: Sequence[str]
-) -> Iterator[Problem]:
+def _missing_names(rows: Sequence[Row], key: str, at: RowKey, names: Sequence[str]) -> Iterator[Problem]:
     """The problems of rows whose column `key` refers to a name that is not in `names`."""
     existing = set(names)
+    kind: Any = at.column.kind
     for row in rows:
-        value = reference.value_in(row)
-        for name in () if value is REFUSED or value is None else reference.kind.names_in(value):
+        value = vars(row)[at.field]
+        if at.field != key:
+            value = vars(value)[key] if isinstance(value, Row) else REFUSED
+        for name in () if value is REFUSED or value is None else kind.names_in(value):
             if name not in existing:
-                table = f"the {reference.kind.table.removesuffix('s')} table"
+                table = f"the {kind.table.removesuffix('s')} table"
                 label = f"{row_label(row)}: " if row_label(row) else ""
-                close = nearest(name, [*reference.kind.words, *names])
+                close = nearest(name, [*kind.words, *names])
                 yield Problem((), f"{label}{key} {shown(name)} is not in {table}{close}")
 
 

@@ -7,16 +7,15 @@ and reflectance properties.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from numbers import Real
-from typing import Annotated, ClassVar, Final, Unpack
+from typing import ClassVar, Final, Unpack
 
 from autocolor.checks import Color, listed
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
-from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, replaced
-from autocolor.scene.kinds import Boolean, ColorKind, ColorsKind, Number, Text, Whole
+from autocolor.scene.columns import BarRange, Problem, Row, RowError, Tier, column_of, replaced
+from autocolor.scene.kinds import ColorsKind, Whole, boolean, color, number, text
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
-from autocolor.scene.row_kinds import Nested, OneRowOf, Reference
+from autocolor.scene.row_kinds import OneRowOf, Reference, nested, table_row
 
 MOST_SURFACES: Final = 255
 """Surface numbers have 8 bits, and 0 means that nothing is visible."""
@@ -31,41 +30,42 @@ PHONG: Final = Phong()
 """The default reflection model."""
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Part(Row):
     """A group of polygons with one surface. Paper: door, hood, roof, fender."""
 
     noun: ClassVar[str] = "part"
 
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "The name of the part, as in the mesh.")]
-    surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
-    stage: Annotated[
-        bool,
-        Column(Boolean(), Tier.MIX, "Whether the part is scenery; a new view frames the other parts."),
-    ] = False
+    name: str = text(tier=Tier.NOTHING, help="The name of the part, as in the mesh.")
+    surface: str = column_of(Reference("surfaces"), tier=Tier.FRAME, help="The name of the part's surface.")
+    stage: bool = boolean(
+        default=False, tier=Tier.MIX, help="Whether the part is scenery; a new view frames the other parts."
+    )
 
     def replace(self, /, **changes: Unpack[PartChanges]) -> Part:
         """The part with some fields changed."""
         return replaced(self, changes)
 
 
-@dataclass(frozen=True, init=False, repr=False)
+@table_row
 class Reflectance(Row):
     """The reflectance properties of a surface: D, S, and a reflection model with its parameters.
 
     Paper: Figure 2.
     """
 
-    diffuse: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "D: the diffuse reflectance.", bar=BarRange(0, 1, 0.01))
-    ] = 0.7
-    specular: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "S: the specular reflectance.", bar=BarRange(0, 1, 0.01))
-    ] = 0.5
-    model: Annotated[
-        ReflectionModel,
-        Column(OneRowOf(MODELS), Tier.LIGHT, "The reflection model of the specular highlight."),
-    ] = PHONG
+    diffuse: float = number(
+        default=0.7, at_least=0, bar=BarRange(0, 1, 0.01), tier=Tier.MIX, help="D: the diffuse reflectance."
+    )
+    specular: float = number(
+        default=0.5, at_least=0, bar=BarRange(0, 1, 0.01), tier=Tier.MIX, help="S: the specular reflectance."
+    )
+    model: ReflectionModel = column_of(
+        OneRowOf(MODELS),
+        default=PHONG,
+        tier=Tier.LIGHT,
+        help="The reflection model of the specular highlight.",
+    )
 
     def __init__(
         self,
@@ -102,7 +102,7 @@ class Reflectance(Row):
         return replaced(self, changes)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Paint(Row):
     """The two colors of a surface and how they blend; or a ramp, which gives the color of every level.
 
@@ -115,41 +115,37 @@ class Paint(Row):
         ("ramp",),
     )
 
-    object_color: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color of diffuse reflection.")] = (
-        176,
-        176,
-        176,
+    object_color: Color = color(
+        default=(176, 176, 176), tier=Tier.ENTRIES, help="The color of diffuse reflection."
     )
-    light_color: Annotated[
-        Color, Column(ColorKind(), Tier.ENTRIES, "The color of the light source, shown in highlights.")
-    ] = (255, 255, 255)
-    blend: Annotated[
-        float,
-        Column(
-            Number(at_least=0, at_most=1),
-            Tier.ENTRIES,
-            "The level above which the light color blends in; 1 for no blending.",
-            "fraction of the range of levels",
-        ),
-    ] = 0.6
-    light_percentage: Annotated[
-        float,
-        Column(
-            Number(at_least=0, at_most=100),
-            Tier.ENTRIES,
-            "The share of the light color at the highest level.",
-            "percent",
-        ),
-    ] = 100.0
-    ramp: Annotated[
-        tuple[Color, ...] | None,
-        Column(
-            ColorsKind(MOST_RAMP_COLORS),
-            Tier.ENTRIES,
-            "Colors at equal distances from the lowest level to the highest; excludes the two colors and"
-            " their blend.",
-        ),
-    ] = None
+    light_color: Color = color(
+        default=(255, 255, 255), tier=Tier.ENTRIES, help="The color of the light source, shown in highlights."
+    )
+    blend: float = number(
+        default=0.6,
+        at_least=0,
+        at_most=1,
+        unit="fraction of the range of levels",
+        bar=BarRange(0, 1, 0.01),
+        tier=Tier.ENTRIES,
+        help="The level above which the light color blends in; 1 for no blending.",
+    )
+    light_percentage: float = number(
+        default=100.0,
+        at_least=0,
+        at_most=100,
+        unit="percent",
+        bar=BarRange(0, 100, 1),
+        tier=Tier.ENTRIES,
+        help="The share of the light color at the highest level.",
+    )
+    ramp: tuple[Color, ...] | None = column_of(
+        ColorsKind(MOST_RAMP_COLORS),
+        default=None,
+        tier=Tier.ENTRIES,
+        help="Colors at equal distances from the lowest level to the highest; excludes the two colors and"
+        " their blend.",
+    )
 
     def rules(self) -> Iterator[Problem]:
         """A ramp stands alone."""
@@ -180,34 +176,40 @@ class Paint(Row):
         return replaced(self, changes)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class Surface(Row):
     """A surface type. Several parts can share it."""
 
     noun: ClassVar[str] = "surface"
 
-    name: Annotated[str, Column(Text(), Tier.MIX, "The name of the surface, which must be unique.")]
-    reflectance: Annotated[
-        Reflectance, Column(Nested(Reflectance, inline=True), Tier.LIGHT, "How the surface reflects light.")
-    ] = field(default_factory=Reflectance)
-    paint: Annotated[
+    name: str = text(tier=Tier.MIX, help="The name of the surface, which must be unique.")
+    reflectance: Reflectance = nested(
+        Reflectance,
+        default=Reflectance(),
+        inline=True,
+        tier=Tier.LIGHT,
+        help="How the surface reflects light.",
+    )
+    paint: Paint = nested(
         Paint,
-        Column(Nested(Paint, inline=True), Tier.ENTRIES, "The colors of the surface, and how they blend."),
-    ] = field(default_factory=Paint)
-    two_sided: Annotated[
-        bool,
-        Column(Boolean(), Tier.FRAME, "Whether normals of polygons seen from behind are turned to the eye."),
-    ] = True
-    levels: Annotated[
-        int | None,
-        Column(
-            Whole(at_least=2, at_most=MOST_LEVELS),
-            Tier.LEVELS,
-            "The number of lookup table entries; if absent, a share of the remaining entries.",
-            bar=BarRange(2, 256, 1),
-            start=64,
-        ),
-    ] = None
+        default=Paint(),
+        inline=True,
+        tier=Tier.ENTRIES,
+        help="The colors of the surface, and how they blend.",
+    )
+    two_sided: bool = boolean(
+        default=True,
+        tier=Tier.FRAME,
+        help="Whether normals of polygons seen from behind are turned to the eye.",
+    )
+    levels: int | None = column_of(
+        Whole(2, MOST_LEVELS),
+        default=None,
+        bar=BarRange(2, 256, 1),
+        start=64,
+        tier=Tier.LEVELS,
+        help="The number of lookup table entries; if absent, a share of the remaining entries.",
+    )
 
     def replace(self, /, **changes: Unpack[SurfaceChanges]) -> Surface:
         """The surface with some fields changed, also fields of its reflectance and its paint."""

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, ClassVar, Final, NamedTuple, Unpack
+from typing import ClassVar, Final, NamedTuple, Unpack
 
 import numpy as np
 
@@ -17,9 +16,9 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.scene.changes import NamedViewChanges, ViewChanges
-from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Problem, Row, Tier, replaced
-from autocolor.scene.kinds import Number, Text, VectorKind, short_turn
-from autocolor.scene.row_kinds import Nested
+from autocolor.scene.columns import BarRange, Problem, Row, Tier, replaced
+from autocolor.scene.kinds import coordinates, number, short_turn, text, vector
+from autocolor.scene.row_kinds import nested, table_row
 
 MOST_VIEWS: Final = 64
 """Limit: named views of a scene."""
@@ -61,47 +60,38 @@ class Polar(NamedTuple):
         )
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class View(Row):
     """An eye position, and a view direction or a target. The world's z axis points up."""
 
     noun: ClassVar[str] = "view"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("target",))
 
-    eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "The position of the eye.", WORLD_UNITS)]
-    direction: Annotated[
-        Vector | None,
-        Column(
-            VectorKind(has_length=True), Tier.FRAME, "The view direction, of any length; excludes a target."
-        ),
-    ] = None
-    target: Annotated[
-        Vector | None,
-        Column(
-            VectorKind(), Tier.FRAME, "The point that the eye looks at; excludes a direction.", WORLD_UNITS
-        ),
-    ] = None
-    angle: Annotated[
-        float,
-        Column(
-            Number(turns=True),
-            Tier.FRAME,
-            "The rotation of the horizontal axis of the picture plane.",
-            "degrees",
-            bar=BarRange(-180, 180, 1),
-        ),
-    ] = 0.0
-    field_of_view: Annotated[
-        float,
-        Column(
-            Number(at_least=0.01, at_most=179),
-            Tier.FRAME,
-            "The vertical field of view of a picture of 4:3 or wider; a narrower picture has the horizontal"
-            " field of view of 4:3.",
-            "degrees",
-            bar=BarRange(5, 120, 1),
-        ),
-    ] = 30.0
+    eye: Vector = coordinates(tier=Tier.FRAME, help="The position of the eye.")
+    direction: Vector | None = vector(
+        default=None, tier=Tier.FRAME, help="The view direction, of any length; excludes a target."
+    )
+    target: Vector | None = coordinates(
+        default=None, tier=Tier.FRAME, help="The point that the eye looks at; excludes a direction."
+    )
+    angle: float = number(
+        default=0.0,
+        turns=True,
+        unit="degrees",
+        bar=BarRange(-180, 180, 1),
+        tier=Tier.FRAME,
+        help="The rotation of the horizontal axis of the picture plane.",
+    )
+    field_of_view: float = number(
+        default=30.0,
+        at_least=0.01,
+        at_most=179,
+        unit="degrees",
+        bar=BarRange(5, 120, 1),
+        tier=Tier.FRAME,
+        help="The vertical field of view of a picture of 4:3 or wider; a narrower picture has the horizontal"
+        " field of view of 4:3.",
+    )
 
     def rules(self) -> Iterator[Problem]:
         """Exactly one of direction and target is given, and the target is not the eye."""
@@ -208,14 +198,14 @@ class View(Row):
         return replaced(self, changes)
 
 
-@dataclass(frozen=True, repr=False)
+@table_row
 class NamedView(Row):
     """A view with a name, to come back to."""
 
     noun: ClassVar[str] = "named view"
 
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "The name, unique among the named views.")]
-    view: Annotated[View, Column(Nested(View, inline=True), Tier.NOTHING, "The view.")]
+    name: str = text(tier=Tier.NOTHING, help="The name, unique among the named views.")
+    view: View = nested(View, inline=True, tier=Tier.NOTHING, help="The view.")
 
     def replace(self, /, **changes: Unpack[NamedViewChanges]) -> NamedView:
         """The named view with some fields changed, also fields of its view."""

@@ -155,5 +155,4 @@ def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) 
 
 
 def _default(name: str) -> object:
-    default = fields_of(Light)[name].default
-    return None if default is None else default()
+    return fields_of(Light)[name].default

@@ -14,7 +14,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import InputError, UsageError
 from autocolor.mapping.legend import CORNERS
-from autocolor.scene.columns import bar_of, fields_of
+from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import new_light_of
 from autocolor.scene.following import attached, detached
 from autocolor.scene.lights import HalfSpace, Light, free_name
@@ -270,7 +270,7 @@ class LightList:
 
     def _row(self, number: int, light: Light) -> LightRow:
         session, name = self._session, light.name
-        bar = bar_of(fields_of(Light)["intensity"].column)
+        bar = fields_of(Light)["intensity"].bar
         assert bar is not None
         return LightRow(
             name,
@@ -519,7 +519,7 @@ def half_space_rows(session: Session, light: Light, picking: PlanePicking) -> li
 
 def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widget]:
     name = half_space.name
-    helps = {key: field.column.help for key, field in fields_of(HalfSpace).items()}
+    helps = {key: field.help for key, field in fields_of(HalfSpace).items()}
     usual = session.world.range_of_lengths(is_zero_left_out=False)
 
     def put(**changes: object) -> None:

@@ -23,14 +23,13 @@ from autocolor.mapping.intensity import (
     mapped_ranges,
     stage_surfaces,
 )
-from autocolor.scene.columns import bar_within
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
-from autocolor.widgets.bars import Bar
+from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.items import (
     CHARACTER,
     GRAY,

@@ -15,12 +15,11 @@ from autocolor.checks import Color
 from autocolor.mapping.bands import colored_surfaces, own_limits
 from autocolor.mapping.legend import CORNERS
 from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
-from autocolor.scene.columns import bar_within
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scalar import Scalar
 from autocolor.screens.picture.over_picture import OverPicture, surface_row
 from autocolor.screens.session import Session
-from autocolor.widgets.bars import Bar
+from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget
 

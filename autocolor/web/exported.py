@@ -267,7 +267,7 @@ def _legend_values(image: DisplayImage, smooth: int) -> dict[str, Any] | None:
 
 def light_rows(scene: Scene) -> list[dict[str, Any]]:
     """The name, switch and intensity of each light, and `most`, the upper end of a slider."""
-    bar = fields_of(Light)["intensity"].column.bar
+    bar = fields_of(Light)["intensity"].bar
     assert bar is not None
     return [
         {

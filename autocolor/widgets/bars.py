@@ -12,6 +12,7 @@ import numpy as np
 
 from autocolor.arrays import Numbers, Words, half_up
 from autocolor.errors import UsageError
+from autocolor.scene.columns import BarRange
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER,
@@ -172,6 +173,23 @@ class Bar(Widget):
 WIDE_LABEL: Final = 16
 WIDE_NUMBER: Final = 12
 """Characters beside a wide bar."""
+
+
+LEAST_STEPS: Final = 100
+"""Assumed: the least number of steps of a bar, so that a step is a small change."""
+
+
+def bar_within(low: float, high: float) -> BarRange:
+    """The bar from `low` to a larger `high`, with LEAST_STEPS or more steps of 1, 2 or 5 times a power of 10.
+
+    >>> bar_within(0, 180)
+    BarRange(low=0, high=180, step=1.0)
+    """
+    most = (high - low) / LEAST_STEPS
+    power = 10.0 ** math.floor(math.log10(most))
+    # A step may exceed its bound by no more than rounding: 0.01 is a hundredth of 1.
+    factors = [factor for factor in (1, 2, 5, 10) if factor * power <= most * (1 + 1e-9)]
+    return BarRange(low, high, float(f"{max(factors, default=1) * power:.12g}"))
 
 
 def rounded_to(value: float, step: float) -> float:

@@ -15,7 +15,7 @@ from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import Vector
-from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Field, Row, bar_of, bar_within, fields_of
+from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, fields_of
 from autocolor.scene.kinds import (
     AngleCurve,
     AngleCurveKind,
@@ -29,7 +29,7 @@ from autocolor.scene.kinds import (
     in_digits,
 )
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
-from autocolor.widgets.bars import Bar, rounded_to
+from autocolor.widgets.bars import Bar, bar_within, rounded_to
 from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
 
 Put = Callable[[Mapping[str, object]], object]
@@ -134,13 +134,12 @@ def _rows_in(
             yield from _rows_of_field(menu, name, fields[name], vars(row)[name])
 
 
-def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator[Widget]:
-    column = field.column
+def _rows_of_field(menu: _Menu, name: str, column: Column, value: Any) -> Iterator[Widget]:
     kind, help = column.kind, column.help
     shown = f"{menu.label}{name}".replace("_", " ")
     put = partial(_put, menu.put, name)
     if isinstance(kind, (Number, Whole)):
-        yield _bar(menu, shown, name, field, value)
+        yield _bar(menu, shown, name, column, value)
     elif isinstance(kind, Boolean):
         yield Switch(shown, help, is_on=bool(value), flip=partial(put, not value))
     elif isinstance(kind, OneOf):
@@ -154,7 +153,7 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
     elif isinstance(kind, AngleCurveKind):
         yield from _curve_rows(menu, shown, name, kind, help, value)
     elif isinstance(kind, Referring):
-        yield from reference_rows(shown, field, kind, value, put, menu.world.names)
+        yield from reference_rows(shown, column, kind, value, put, menu.world.names)
     elif isinstance(kind, OneRowOf):
         yield Choice(shown, help, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
         yield from _rows_in(menu, value)
@@ -188,11 +187,11 @@ def _rows_of_row(
     yield from _rows_in(menu, row, (*leave_out, "on"))
 
 
-def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) -> Bar:
+def _bar(menu: _Menu, label: str, name: str, column: Column, value: float | None) -> Bar:
     """The bar of a number. A box switches a number that may be absent, or without a limit."""
-    column, put, axis = field.column, menu.put, menu.axis
+    put, axis = menu.put, menu.axis
     kind = column.kind
-    usual = bar_of(column) or BarRange(0, 1, 0.01)
+    usual = column.bar or BarRange(0, 1, 0.01)
     if column.unit == WORLD_UNITS and isinstance(kind, Number) and kind.at_least == 0:
         usual = menu.world.range_of_lengths(is_zero_left_out=kind.above)
     elif column.unit == WORLD_UNITS:
@@ -204,7 +203,7 @@ def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) 
         limit = menu.world.end_beyond(axis, endless, menu.edge) if axis else 0.0
         present = None if value == endless else value
         flip = partial(_put, put, name, limit if present is None else endless)
-    elif field.is_optional:
+    elif column.is_optional:
         start = usual.low if column.start is None else column.start
         start = int(start) if isinstance(kind, Whole) else start
         flip = partial(_put, put, name, start if value is None else None)
@@ -240,8 +239,7 @@ def _curve_rows(
     yield Switch(label, help, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
     curve = curve or ()
     for number, (angle, share) in enumerate(curve):
-        limits = kind.share_kind(number)
-        usual = bar_within(limits.at_least, limits.at_most)
+        usual = bar_within(0 if number else kind.least, 1)
         yield Bar(
             f"at {angle:g} degrees",
             help,
@@ -252,21 +250,21 @@ def _curve_rows(
 
 
 def reference_rows(
-    label: str, field: Field, kind: Referring, value: Any, take: TakeNames, tables: TableNames
+    label: str, column: Column, kind: Referring[Any], value: Any, take: TakeNames, tables: TableNames
 ) -> Iterator[Widget]:
     """The rows for a column of names; `take` is called with the new name or names."""
-    column, names = field.column, tables.of(kind.table)
+    names = tables.of(kind.table)
     if isinstance(kind, References):
         yield from _list_rows(label, column, value, take, tables.pages, (kind.table, names))
     elif isinstance(kind, Reference):
-        first = (NONE,) if field.is_optional else ()
+        first = (NONE,) if column.is_optional else ()
         word = kind.words
         yield Choice(
             label,
             column.help,
             names=(*first, *word, *(name for name in names if name not in (*first, *word))),
             present=NONE if value is None else value,
-            choose=partial(_choose, take, field.is_optional),
+            choose=partial(_choose, take, column.is_optional),
         )
 
 

@@ -9,9 +9,20 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
-from autocolor.scene.columns import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of, to_plain
+from autocolor.scene.columns import (
+    MISSING,
+    WORLD_UNITS,
+    Column,
+    Kind,
+    Row,
+    Tier,
+    fields_of,
+    keys_of,
+    to_plain,
+)
 from autocolor.scene.kinds import Number
 from autocolor.scene.lights import Flap, HalfSpace, Light
 from autocolor.scene.row_kinds import Nested, OneRowOf
@@ -65,12 +76,25 @@ LEFT_OUT = {
 }
 """What stands in a header, or has a table of its own."""
 
+WORDS = "all words, the entries that differ"
+
+COSTS = {
+    Tier.NOTHING: ("nothing", "nothing"),
+    Tier.ENTRIES: ("entries of the lookup table", "those entries, no word"),
+    Tier.LEVELS: ("the levels", WORDS),
+    Tier.MIX: ("the weighted sum of the lights", WORDS),
+    Tier.LIGHT: ("one light, or all lights on one surface", WORDS),
+    Tier.FRAME: ("everything", WORDS),
+}
+"""What an edit of each tier computes again, and what it sends to the display."""
+
 
 def tiers() -> Iterator[str]:
     """The table of the costs of edits."""
     yield "| an edit costs | computed again | sent to the display |"
     yield "|---|---|---|"
-    yield from (f"| {tier.name.lower()} | {tier.computed} | {tier.sent} |" for tier in Tier)
+    for tier, (computed, sent) in COSTS.items():
+        yield f"| {tier.name.lower()} | {computed} | {sent} |"
     yield ""
 
 
@@ -86,10 +110,10 @@ def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
         yield f"{text}\n"
     yield "| key | what it is | unit | value | default | on a bar | an edit costs |"
     yield "|---|---|---|---|---|---|---|"
-    for key, (column, field, _) in keys_of(cls).items():
+    for key, (column, field) in keys_of(cls).items():
         if key not in LEFT_OUT.get(cls, ()):
             rule = column.kind.rule().removeprefix("must be ")
-            text = f"{column.help}{going_with(fields_of(cls)[field].column.kind, key)}"
+            text = f"{column.help}{going_with(fields_of(cls)[field].kind, key)}"
             cells = (
                 f"`{key}`",
                 text,
@@ -103,12 +127,12 @@ def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
     yield ""
 
 
-def going_with(kind: Kind, key: str) -> str:
+def going_with(kind: Kind[Any], key: str) -> str:
     """A sentence with the variants that have the key, of inline rows too; nothing for any other key."""
     if isinstance(kind, Nested) and kind.inline:
         for name, field in fields_of(kind.row_class).items():
-            if isinstance(field.column.kind, OneRowOf) and key != name:
-                return going_with(field.column.kind, key)
+            if isinstance(field.kind, OneRowOf) and key != name:
+                return going_with(field.kind, key)
     if not isinstance(kind, OneRowOf):
         return ""
     names = [repr(name) for name, cls in kind.classes.items() if key in keys_of(cls)]
@@ -117,7 +141,7 @@ def going_with(kind: Kind, key: str) -> str:
 
 def on_a_bar(column: Column) -> str:
     """The usual range and the step of a number, and what it starts with when it is switched on, if absent."""
-    bar = bar_of(column)
+    bar = column.bar
     if bar is None and column.unit == WORLD_UNITS:
         is_length = isinstance(column.kind, Number) and column.kind.at_least == 0
         return "up to the size of the object" if is_length else "that of the object"
@@ -134,22 +158,21 @@ def tier(column: Column) -> str:
 
 def default(cls: type[Row], key: str, field: str) -> str:
     """The default of a key, or nothing."""
-    described = fields_of(cls)[field]
-    if described.default is None:
+    column = fields_of(cls)[field]
+    if column.default is MISSING:
         return ""
-    value = described.default()
-    if value is None:
+    if column.default is None:
         return "absent"
-    written = {**parameters(described.column.kind), **described.column.kind.to_plain(field, value)}
+    written = {**parameters(column.kind), **column.kind.to_plain(field, column.default)}
     return f"`{json.dumps(written[key])}`" if written.get(key) not in (None, {}) else "absent"
 
 
-def parameters(kind: Kind) -> dict[str, object]:
+def parameters(kind: Kind[Any]) -> dict[str, object]:
     """The keys of each variant with their defaults, those of variants inside inline rows too."""
     if isinstance(kind, OneRowOf):
         return {key: value for cls in kind.classes.values() for key, value in to_plain(cls()).items()}
     inner = fields_of(kind.row_class).values() if isinstance(kind, Nested) and kind.inline else ()
-    return {key: value for each in inner for key, value in parameters(each.column.kind).items()}
+    return {key: value for each in inner for key, value in parameters(each.kind).items()}
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final, NamedTuple
+from typing import Any, ClassVar, Final, NamedTuple
 from weakref import WeakKeyDictionary
 
 from autocolor.errors import InputError, OutputError
@@ -23,9 +23,10 @@ from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import free_path, path_within
 from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
 from autocolor.files.writing import write_atomically
-from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
-from autocolor.scene.kinds import OneOf, Text
+from autocolor.scene.columns import BarRange, Problem, Row, RowError, Tier, column_of, from_plain
+from autocolor.scene.kinds import one_of, text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
+from autocolor.scene.row_kinds import table_row
 
 MOST_MESHES: Final = 1000
 
@@ -33,32 +34,37 @@ MESH_FILE_KEYS: Final = ("file", "nodes", "polygons")
 """The keys of a `[[mesh]]` table whose values are paths; the others tell how the files are read."""
 
 
-@dataclass(frozen=True)
+@table_row
 class MeshEntry(Row):
     """One `[[mesh]]` table of a scene file: its files, their up axis, scale and normals, the crease angle."""
 
     noun: ClassVar[str] = "mesh"
 
-    file: Annotated[str | None, Column(Text(), Tier.FRAME, "A mesh file in the scene's folder.")] = None
-    nodes: Annotated[str | None, Column(Text(), Tier.FRAME, "A node table, with a polygon table.")] = None
-    polygons: Annotated[str | None, Column(Text(), Tier.FRAME, "The polygon table.")] = None
-    up: Annotated[str, Column(OneOf(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
-    scale: Annotated[
-        float,
-        Column(SCALES, Tier.FRAME, "A factor for the coordinates of the file.", bar=BarRange(0.01, 10, 0.01)),
-    ] = 1.0
-    normals: Annotated[
-        str, Column(OneOf(NORMALS), Tier.FRAME, "Whose normals are used: computed, or the file's own.")
-    ] = COMPUTED
-    crease_angle: Annotated[
-        float | None,
-        Column(
-            CREASE_ANGLES,
-            Tier.FRAME,
-            "Polygons that meet at a larger angle keep a sharp edge; the same for all meshes.",
-            "degrees",
-        ),
-    ] = None
+    file: str | None = text(default=None, tier=Tier.FRAME, help="A mesh file in the scene's folder.")
+    nodes: str | None = text(default=None, tier=Tier.FRAME, help="A node table, with a polygon table.")
+    polygons: str | None = text(default=None, tier=Tier.FRAME, help="The polygon table.")
+    up: str = one_of(UPS, default="z", tier=Tier.FRAME, help="The file's up axis; the world's is z.")
+    scale: float = column_of(
+        SCALES,
+        default=1.0,
+        bar=BarRange(0.01, 10, 0.01),
+        tier=Tier.FRAME,
+        help="A factor for the coordinates of the file.",
+    )
+    normals: str = one_of(
+        NORMALS,
+        default=COMPUTED,
+        tier=Tier.FRAME,
+        help="Whose normals are used: computed, or the file's own.",
+    )
+    crease_angle: float | None = column_of(
+        CREASE_ANGLES,
+        default=None,
+        unit="degrees",
+        bar=BarRange(0, 180, 1),
+        tier=Tier.FRAME,
+        help="Polygons that meet at a larger angle keep a sharp edge; the same for all meshes.",
+    )
 
     @property
     def file_keys(self) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.toml_edit import FILE_TABLES, ORDERED, edited_toml, item_numbers
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.scene.columns import Row, difference, fields_of, from_plain, to_plain, with_values
+from autocolor.scene.columns import MISSING, Row, difference, fields_of, from_plain, to_plain, with_values
 from autocolor.scene.row_kinds import RowList, without_name
 from autocolor.scene.scene import Scene
 
@@ -54,9 +54,9 @@ def tables_of(scene: Scene, *, sparse: bool = False) -> dict[str, Any]:
         value = vars(scene)[name]
         if name in BY_NAME:
             tables[name] = {row.name: without_name(keys_of_row(row)) for row in value}
-        elif isinstance(field.column.kind, RowList):
+        elif isinstance(field.kind, RowList):
             tables[name] = [keys_of_row(row) for row in value]
-        elif sparse and field.default and value == field.default():
+        elif sparse and field.default is not MISSING and value == field.default:
             tables.pop(name, None)
         elif isinstance(value, Row) and name in tables:
             tables[name] = keys_of_row(value)
@@ -71,7 +71,7 @@ def _plain_row(row: Row) -> dict[str, object]:
 def sparse_row(row: Row) -> dict[str, object]:
     """The row as keys and plain values, without keys whose values are their defaults."""
     keys = to_plain(row)
-    required = [name for name, field in fields_of(type(row)).items() if field.default is None]
+    required = [name for name, field in fields_of(type(row)).items() if field.default is MISSING]
     given = {key: keys[key] for key in (*required, *ALWAYS_WRITTEN) if key in keys}
     changes = difference(from_plain(type(row), given), row)
     for key, value in vars(row).items():

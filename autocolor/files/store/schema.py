@@ -24,7 +24,7 @@ from typing import Any, Final, NamedTuple
 
 from autocolor.checks import listed, nearest
 from autocolor.errors import InputError
-from autocolor.scene.columns import Column, Kind, Row, fields_of, to_plain
+from autocolor.scene.columns import MISSING, Column, Kind, Row, fields_of, to_plain
 from autocolor.scene.kinds import Boolean, ColorKind, Instance, Number, OneOf, Text, VectorKind, Whole
 from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, RowList
 from autocolor.scene.scalar import NODE, POLYGON
@@ -34,7 +34,7 @@ NUMBER: Final = "number"
 """The column that counts the rows of a table from 1, in their order; the tables of the mesh apart."""
 
 AXES: Final = ("x", "y", "z")
-TYPES: Final[Mapping[str, tuple[type[Kind], ...]]] = {
+TYPES: Final[Mapping[str, tuple[type[Kind[Any]], ...]]] = {
     "REAL": (Number, VectorKind),
     "INTEGER": (Whole, Boolean),
     "TEXT": (Text, OneOf, ColorKind, Reference, OneRowOf),
@@ -108,16 +108,17 @@ def columns_of(
     may be absent must have a column that is never NULL.
     """
     alternatives = {name for group in row_class.alternatives for name in group}
-    for name, (column, is_optional, default) in fields_of(row_class).items():
-        kind = column.kind
-        may_be_null = may_be_absent or is_optional or name in alternatives
+    for name, column in fields_of(row_class).items():
+        kind, default = column.kind, column.default
+        may_be_null = may_be_absent or column.is_optional or name in alternatives
         if isinstance(kind, Nested):
             yield from columns_of(kind.row_class, around if kind.inline else (*around, name), may_be_null)
             continue
         if isinstance(kind, (Instance, RowList)):
             continue
-        start: Any = kind.to_plain(name, default()).get(name) if default and not may_be_null else None
-        may_be_null |= default is not None and start is None
+        has_start = default is not MISSING and not may_be_null
+        start: Any = kind.to_plain(name, default).get(name) if has_start else None
+        may_be_null |= default is not MISSING and start is None
         for key, inner in kind.keys(name, column).items():
             path = (*around, key)
             # The other keys belong to the classes of a variant; a class has only some of the keys.
@@ -206,9 +207,9 @@ class RowTable:
 ROW_TABLES: Final[Mapping[str, RowTable]] = {
     "scene": RowTable("scene", Scene, is_single=True),
     **{
-        name: RowTable(name, field.column.kind.row_class, isinstance(field.column.kind, Nested))
+        name: RowTable(name, field.kind.row_class, isinstance(field.kind, Nested))
         for name, field in fields_of(Scene).items()
-        if isinstance(field.column.kind, (RowList, Nested))
+        if isinstance(field.kind, (RowList, Nested))
     },
 }
 """The tables of a scene without its mesh: `scene`, `parts`, `surfaces`, `lights`, `view`, `scalar`."""

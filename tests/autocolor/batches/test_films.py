@@ -162,11 +162,11 @@ def test_after_each_load_of_a_stream_the_display_shows_its_frame(cycle: str, tmp
 
 
 NO_CYCLES: list[tuple[str, object, str]] = [
-    (POSITION, [4, -4, 3], "an edit of lights.key.position computes one light, or all"),
+    (POSITION, [4, -4, 3], "an edit of lights.key.position changes words"),
     ("lights.key.intensity", 0.1, "write a film such as .webp, or let words stand for normals"),
-    ("view.eye", [4, -4, 3], "an edit of view.eye computes everything again; write a film such as .webp"),
-    ("mapping", "gamma", "an edit of mapping computes the levels again"),
-    ("scalar", {"name": "z"}, "an edit of scalar computes"),
+    ("view.eye", [4, -4, 3], "an edit of view.eye changes words; write a film such as .webp"),
+    ("mapping", "gamma", "an edit of mapping changes words"),
+    ("scalar", {"name": "z"}, "an edit of scalar changes words"),
 ]
 
 

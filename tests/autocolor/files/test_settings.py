@@ -29,7 +29,7 @@ def plain_at(scene: Scene, key: str) -> Any:
     place = place_of(scene, key)
     field, value, name = field_of(place), value_at(scene, place), place.path[-1]
     assert field is not None
-    return None if value is None else field.column.kind.to_plain(name, value)[name]
+    return None if value is None else field.kind.to_plain(name, value)[name]
 
 
 @given(scenes())

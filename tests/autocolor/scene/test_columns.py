@@ -1,10 +1,10 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import pickle
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 import pytest
 from hypothesis import given
@@ -14,14 +14,11 @@ from autocolor import Flap, Light, Scene, Surface, View
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
     WORLD_UNITS,
-    BarRange,
     Column,
     Problem,
     Row,
     RowError,
     Tier,
-    bar_of,
-    bar_within,
     cost,
     difference,
     fields_of,
@@ -29,7 +26,8 @@ from autocolor.scene.columns import (
     keys_of,
     replaced,
 )
-from autocolor.scene.kinds import Number, Text, Whole
+from autocolor.scene.kinds import Number, Whole, number, text
+from autocolor.scene.row_kinds import table_row
 from autocolor.testing import scenes
 from tests.autocolor.strategies import of_mesh
 from tests.small import wall_scene
@@ -38,22 +36,22 @@ from tests.tables import call, refused
 NUMBERS = [
     pytest.param(column, id=f"{cls.__name__}.{key}")
     for cls in (Flap, Light, Surface, View, Scene, MeshEntry)
-    for key, (column, _, _) in keys_of(cls).items()
+    for key, (column, _) in keys_of(cls).items()
     if isinstance(column.kind, (Number, Whole))
 ]
 
 
-@dataclass(frozen=True)
+@table_row
 class Span(Row):
     """A row with a rule between its columns, and alternatives."""
 
     noun: ClassVar[str] = "span"
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("end",), ("length",))
 
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "What it is called.")]
-    begin: Annotated[float, Column(Number(), Tier.LIGHT, "Where it begins.")] = 0.0
-    end: Annotated[float | None, Column(Number(), Tier.LIGHT, "Where it ends.")] = None
-    length: Annotated[float | None, Column(Number(at_least=0), Tier.MIX, "How long it is.")] = None
+    name: str = text(tier=Tier.NOTHING, help="What it is called.")
+    begin: float = number(default=0.0, tier=Tier.LIGHT, help="Where it begins.")
+    end: float | None = number(default=None, tier=Tier.LIGHT, help="Where it ends.")
+    length: float | None = number(default=None, at_least=0, tier=Tier.MIX, help="How long it is.")
 
     def rules(self) -> Iterator[Problem]:
         if self.end is not None and self.length is not None:
@@ -64,7 +62,7 @@ class Span(Row):
 
 @pytest.mark.parametrize("column", NUMBERS)
 def test_every_number_has_a_bar_within_its_limits_or_is_measured_by_the_object(column: Column) -> None:
-    bar = bar_of(column)
+    bar = column.bar
     assert (bar is None) == (column.unit == WORLD_UNITS)
     if bar is None:
         return
@@ -72,52 +70,24 @@ def test_every_number_has_a_bar_within_its_limits_or_is_measured_by_the_object(c
     assert 10 <= (bar.high - bar.low) / bar.step <= 1000
     problems: list[Problem] = []
     for value in (bar.low, bar.high, bar.low + bar.step, bar.low - 1, 1e9, column.start or bar.high):
-        column.kind.validated(type(bar.low)(bar.rounded(value)), (), problems)
+        column.kind.validated(type(bar.low)(min(max(value, bar.low), bar.high)), (), problems)
     assert problems == []
 
 
 @pytest.mark.parametrize("cls", [Flap, Light, Surface, View, Scene])
 def test_a_number_that_may_be_absent_tells_what_it_starts_with(cls: type[Row]) -> None:
-    for column, is_optional, default in fields_of(cls).values():
-        bar = bar_of(column)
+    for column in fields_of(cls).values():
+        bar = column.bar
         if bar is None:
             assert column.start is None
-        elif is_optional:
+        elif column.is_optional:
             assert column.start is not None
-            assert bar.rounded(column.start) == column.start
+            assert bar.low <= column.start <= bar.high
+            assert column.start / bar.step == pytest.approx(round(column.start / bar.step))
         else:
             assert column.start is None
-            assert default is not None
-            value = default()
-            assert isinstance(value, float)
-            assert bar.low <= value <= bar.high
-
-
-bars = st.tuples(
-    st.integers(-100, 100), st.integers(1, 400), st.sampled_from([0.001, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5])
-).map(lambda given: BarRange(given[0] * given[2], (given[0] + given[1]) * given[2], given[2]))
-
-
-@given(bars, st.floats(-1e6, 1e6))
-def test_a_rounded_value_is_on_the_bar_and_the_nearest_step(bar: BarRange, value: float) -> None:
-    rounded = bar.rounded(value)
-    assert bar.low <= rounded <= bar.high
-    within = min(max(value, bar.low), bar.high)
-    assert abs(rounded - within) <= bar.step * 0.5000001
-    assert bar.rounded(rounded) == rounded
-
-
-@given(bars, st.floats(0, 1))
-def test_the_value_at_a_fraction_has_that_fraction_but_for_a_step(bar: BarRange, fraction: float) -> None:
-    assert abs(bar.fraction(bar.at(fraction)) - fraction) * (bar.high - bar.low) <= bar.step * 0.5000001
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "step"),
-    [(0, 1, 0.01), (0, 100, 1), (0, 180, 1), (-180, 180, 2), (3, 3.004, 2e-5), (0, 3e-9, 2e-11)],
-)
-def test_a_bar_has_round_steps_of_at_most_a_hundredth(low: float, high: float, step: float) -> None:
-    assert bar_within(low, high) == BarRange(low, high, step)
+            assert isinstance(column.default, float)
+            assert bar.low <= column.default <= bar.high
 
 
 def test_each_of_64_unknown_keys_is_a_problem() -> None:
@@ -148,6 +118,8 @@ def test_giving_one_alternative_drops_the_others() -> None:
     assert replaced(span, {"end": None}) == Span("a", 1)
     assert span == from_plain(Span, {"name": "a", "begin": 1, "end": 2.0})
     assert difference(span, Span("b", 1)) == {"name": "b", "end": None}
+    # Without the key, a limit would stay.
+    assert difference(Flap(1, 2), Flap(1)) == {"maximum": math.inf}
 
 
 def test_a_change_keeps_nothing_that_was_computed_of_the_row() -> None:
@@ -206,7 +178,7 @@ def values_in(row: Row) -> Iterator[tuple[Column, object]]:
     """All values of a row and of the rows inside it, with their columns."""
     for name, field in fields_of(type(row)).items():
         value = vars(row)[name]
-        yield field.column, value
+        yield field, value
         for inner in value if isinstance(value, tuple) else (value,):
             if isinstance(inner, Row):
                 yield from values_in(inner)

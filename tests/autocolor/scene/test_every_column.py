@@ -41,6 +41,7 @@ from autocolor.journal.places import Source
 from autocolor.journal.script import script_of
 from autocolor.mapping.normal_words import far_light
 from autocolor.scene.columns import (
+    MISSING,
     Row,
     RowError,
     Tier,
@@ -240,11 +241,9 @@ def row_of(scene: Scene, table: str) -> Row | None:
 
 def default_of(cls: type[Row], key: str) -> object:
     """The plain value of a key that is left out; None for a key that must be given."""
-    fields = fields_of(cls)
     field = keys_of(cls)[key].field
-    default = fields[field].default
-    value = None if default is None else default()
-    return None if value is None else fields[field].column.kind.to_plain(field, value).get(key)
+    column = fields_of(cls)[field]
+    return None if column.default in (None, MISSING) else column.kind.to_plain(field, column.default).get(key)
 
 
 def test_every_key_has_an_edit() -> None:
@@ -404,7 +403,7 @@ def test_every_number_has_its_limits() -> None:
     rules = {
         f"{table}.{key}".strip("."): column.kind.rule()
         for table, cls in CLASSES.items()
-        for key, (column, _, _) in keys_of(cls).items()
+        for key, (column, _) in keys_of(cls).items()
         if isinstance(column.kind, (Number, Whole))
     }
     assert rules == {key: f"must be a {rule}" for rule, keys in NUMBERS.items() for key in keys.split()}

@@ -39,12 +39,12 @@ NAN, INF = math.nan, math.inf
 CURVE: AngleCurve = ((0.0, 0.5), (90.0, 1.0))
 ANGLES = AngleCurveKind(0.001, ((0.0, 0.04), (60.0, 0.1), (90.0, 1.0)))
 CURVED = CurveKind({"linear": 1, "gamma": 2})
-RANGES = RangesByName("surfaces", "auto", "object")
+RANGES = RangesByName("surfaces", "object", "auto")
 HUGE = 10**5000
 """A number that Python does not write in digits."""
 
 
-def accepted(given: tuple[Kind, Any]) -> Any:
+def accepted(given: tuple[Kind[Any], Any]) -> Any:
     """The value that a kind makes of a value. Raises RowError with all of its problems."""
     kind, value = given
     problems: list[Problem] = []
@@ -57,7 +57,7 @@ def accepted(given: tuple[Kind, Any]) -> Any:
 
 COLOR = 'it must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255, not '
 NO_COLORS = '; write them as in ["#200", "#f60", "#fff"]'
-SENTENCES: list[tuple[tuple[Kind, Any], str]] = [
+SENTENCES: list[tuple[tuple[Kind[Any], Any], str]] = [
     ((Number(), 10**400), f"it must be a finite number, not {shown(10**400)}"),
     ((Number(), HUGE), "it must be a finite number, not a very large int"),
     ((Number(at_least=0), -1), "it must be a finite number of at least 0, not -1"),
@@ -77,7 +77,10 @@ SENTENCES: list[tuple[tuple[Kind, Any], str]] = [
         (VectorKind(), "1,2,3"),
         "it must be three finite numbers of at most 1e36, not '1,2,3'; write them as in [1, 2, 3]",
     ),
-    ((VectorKind(has_length=True), (0, 0, 0)), "it must have a length above 0, not (0, 0, 0); change it"),
+    (
+        (VectorKind(has_length=True), (0, 0, 0)),
+        "it must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0",
+    ),
     ((Reference("surfaces"), 3), "it must be a string of at least one character, not 3"),
     ((Reference("lights", "eye"), 3), "it must be 'eye' or the name of a light, not 3"),
     ((References("lights"), "key"), "it must be a list of names, not 'key'"),
@@ -128,12 +131,9 @@ SENTENCES: list[tuple[tuple[Kind, Any], str]] = [
             ("rgba(1, 2, 3, 256)", "; keep its parts from 0 to 255, or from 0% to 100%"),
             ("rgb(300, 0, 0)", "; keep its parts from 0 to 255, or from 0% to 100%"),
             ("hsl(0, 200%, 50%)", "; keep its parts from 0 to 255, or from 0% to 100%"),
-            ((1.0, 0, 0), "; write [255, 0, 0] or '#ff0000'"),
-            ((0.5, 0.25, 0), "; write [128, 64, 0] or '#804000'"),
-            ([10.0, 16.0, 255.0], "; write [10, 16, 255] or '#0a10ff'"),
-            (np.zeros(3, np.float32), "; write [0, 0, 0] or '#000000'"),
-            ((1.0, NAN, 0.0), ""),
-            ((1.0, -3.0, 0.0), ""),
+            ((1.0, 0, 0), "; write [255, 0, 0]"),
+            ((0.5, 0.25, 0), "; write [128, 64, 0]"),
+            ((10.0, 16.0, 255.0), ""),
         )
     ),
 ]
@@ -141,7 +141,7 @@ SENTENCES: list[tuple[tuple[Kind, Any], str]] = [
 
 test_a_value_that_breaks_the_rule_of_its_kind_is_refused = refused(accepted, SENTENCES)
 
-REFUSED_VALUES: list[tuple[Kind, list[Any]]] = [
+REFUSED_VALUES: list[tuple[Kind[Any], list[Any]]] = [
     (Number(), [NAN, INF, True, np.True_, "3", b"3", None, [], {}, 1j]),
     (Number(at_least=0, at_most=1), [-0.1, NAN, INF]),
     (Whole(2, 9), [10, 2.0, True, dict, {"x": 1}]),
@@ -201,7 +201,7 @@ REFUSED_VALUES: list[tuple[Kind, list[Any]]] = [
 @pytest.mark.parametrize(
     ("kind", "value"), [(kind, value) for kind, values in REFUSED_VALUES for value in values]
 )
-def test_what_is_no_value_of_a_kind_is_refused_by_its_rule(kind: Kind, value: object) -> None:
+def test_what_is_no_value_of_a_kind_is_refused_by_its_rule(kind: Kind[Any], value: object) -> None:
     with pytest.raises(RowError) as caught:
         accepted((kind, value))
     (problem,) = caught.value.row_problems
@@ -216,7 +216,7 @@ def test_all_color_scales_but_the_reversed_ones_are_named_where_none_is_near() -
 
 
 RED_AND_BLUE = ((255, 0, 0), (0, 0, 255))
-ACCEPTED: list[tuple[Kind, Any, Any]] = [
+ACCEPTED: list[tuple[Kind[Any], Any, Any]] = [
     (Number(), np.float32(0.5), 0.5),
     (Number(at_least=0, at_most=1), 1, 1.0),
     (Number(at_least=0, at_most=1), 0, 0.0),
@@ -264,7 +264,9 @@ ACCEPTED: list[tuple[Kind, Any, Any]] = [
 
 
 @pytest.mark.parametrize(("kind", "value", "converted"), ACCEPTED)
-def test_a_value_is_held_in_one_type_whatever_it_came_in(kind: Kind, value: object, converted: Any) -> None:
+def test_a_value_is_held_in_one_type_whatever_it_came_in(
+    kind: Kind[Any], value: object, converted: Any
+) -> None:
     result = accepted((kind, value))
     assert result == converted
     # The types of components are seen in how they are written.
@@ -299,7 +301,7 @@ def test_any_text_is_a_color_in_range_or_refused_in_a_sentence(text: str) -> Non
 HOLDS: Any = object()
 """The first of two values."""
 
-HALFWAY: list[tuple[Kind, object, object, object]] = [
+HALFWAY: list[tuple[Kind[Any], object, object, object]] = [
     (Number(), 1.0, 4.0, 2.5),
     (Number(), -1e308, 1e308, 0.0),
     (Number(endless=INF), 1.0, INF, HOLDS),
@@ -334,7 +336,7 @@ HALFWAY: list[tuple[Kind, object, object, object]] = [
 
 @pytest.mark.parametrize(("kind", "one", "other", "halfway"), HALFWAY)
 def test_the_kind_says_what_is_halfway_between_two_values(
-    kind: Kind, one: object, other: object, halfway: object
+    kind: Kind[Any], one: object, other: object, halfway: object
 ) -> None:
     assert (accepted((kind, one)), accepted((kind, other))) == (one, other)
     assert kind.between(one, other, 0.5) == (one if halfway is HOLDS else halfway)

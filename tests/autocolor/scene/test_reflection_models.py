@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Surface
-from autocolor.scene.columns import Field, difference, fields_of
+from autocolor.scene.columns import Column, difference, fields_of
 from autocolor.scene.kinds import AngleCurve
 from autocolor.scene.reflection_models import (
     MODELS,
@@ -147,10 +147,10 @@ def test_models_are_values_under_their_names() -> None:
 
 
 def test_models_that_share_a_key_describe_it_alike() -> None:
-    shared: dict[str, Field] = {}
+    shared: dict[str, Column] = {}
     for model in MODELS.values():
         for name, field in fields_of(model).items():
-            assert shared.setdefault(name, field).column == field.column
+            assert shared.setdefault(name, field) == field
             assert vars(model())[name] == next(
                 vars(other())[name] for other in MODELS.values() if name in fields_of(other)
             )

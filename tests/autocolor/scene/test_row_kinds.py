@@ -1,96 +1,100 @@
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Light, Part, Surface
+from autocolor import Flap, Light, Paint, Part, Scene, Surface, View
 from autocolor.errors import InputError
 from autocolor.scene.columns import (
-    Column,
     Row,
     Tier,
+    column_of,
     cost,
     difference,
+    fields_of,
     from_plain,
     keys_of,
     replaced,
     to_plain,
 )
-from autocolor.scene.kinds import Boolean, Number, Text
-from autocolor.scene.lights import HalfSpace, Links
+from autocolor.scene.kinds import boolean, number, text
+from autocolor.scene.lights import HalfSpace
 from autocolor.scene.row_kinds import (
     MOST_NAMED_ROWS,
-    Nested,
     OneRowOf,
     RangesByName,
     Reference,
     References,
     RowList,
+    nested,
     references_of,
+    table_row,
 )
 from tests.tables import call, refused
 
 
-@dataclass(frozen=True)
+@table_row
 class Round(Row):
     """A model with one parameter."""
 
-    radius: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "How large it is.")] = 1.0
+    radius: float = number(default=1.0, at_least=0, tier=Tier.LIGHT, help="How large it is.")
 
 
 class Rounder(Round):
     """A class that derives from a model is none of the models."""
 
 
-@dataclass(frozen=True)
+@table_row
 class Square(Row):
     """Another one, with a parameter of the same name."""
 
-    side: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "How long a side is.")] = 2.0
-    turn: Annotated[float, Column(Number(), Tier.MIX, "How it is turned.")] = 0.0
+    side: float = number(default=2.0, at_least=0, tier=Tier.LIGHT, help="How long a side is.")
+    turn: float = number(default=0.0, tier=Tier.MIX, help="How it is turned.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Shape(Row):
     """What is inline."""
 
-    weight: Annotated[float, Column(Number(at_least=0), Tier.MIX, "How heavy it is.")] = 1.0
-    model: Annotated[Row, Column(OneRowOf({"round": Round, "square": Square}), Tier.LIGHT, "Its form.")] = (
-        Round()
+    weight: float = number(default=1.0, at_least=0, tier=Tier.MIX, help="How heavy it is.")
+    model: Row = column_of(
+        OneRowOf({"round": Round, "square": Square}), default=Round(), tier=Tier.LIGHT, help="Its form."
     )
 
 
-@dataclass(frozen=True)
+@table_row
 class Lid(Row):
     """What is a table of its own."""
 
     noun: ClassVar[str] = "lid"
 
-    open: Annotated[bool, Column(Boolean(), Tier.ENTRIES, "Whether it is open.")] = False
+    open: bool = boolean(default=False, tier=Tier.ENTRIES, help="Whether it is open.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Box(Row):
     """A row with rows inside."""
 
     noun: ClassVar[str] = "box"
 
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "What it is called.")]
-    shape: Annotated[Shape, Column(Nested(Shape, inline=True), Tier.LIGHT, "Its shape.")] = Shape()
-    lid: Annotated[Lid | None, Column(Nested(Lid), Tier.ENTRIES, "Its lid.")] = None
-    beside: Annotated[str | None, Column(Reference("boxes"), Tier.NOTHING, "Another box.")] = None
+    name: str = text(tier=Tier.NOTHING, help="What it is called.")
+    shape: Shape = nested(Shape, default=Shape(), inline=True, tier=Tier.LIGHT, help="Its shape.")
+    lid: Lid | None = nested(Lid, default=None, tier=Tier.ENTRIES, help="Its lid.")
+    beside: str | None = column_of(Reference("boxes"), default=None, tier=Tier.NOTHING, help="Another box.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Stack(Row):
     """A row with a table."""
 
-    boxes: Annotated[tuple[Box, ...], Column(RowList(Box, by_name=True), Tier.FRAME, "The boxes.")] = ()
+    boxes: tuple[Box, ...] = column_of(
+        RowList(Box, by_name=True), default=(), tier=Tier.FRAME, help="The boxes."
+    )
 
 
 def test_the_keys_of_inline_rows_stand_among_those_around_them() -> None:
@@ -132,7 +136,11 @@ test_a_row_inside_a_row_is_refused_with_the_keys_that_lead_there = refused(
         ),
         (
             lambda: replaced(Box("a"), {"model": Rounder()}),
-            "box 'a': model must be 'round' or 'square', not Rounder(radius=1.0)",
+            "box 'a': model must be 'round' or 'square', not Rounder()",
+        ),
+        (
+            lambda: replaced(Box("a"), {"model": {"radus": 3}}),
+            "box 'a': there is no field 'radus'; did you mean 'radius'?",
         ),
         (lambda: replaced(Box("a"), {"shape": 3}), "box 'a': shape must be a Shape, not 3"),
         (
@@ -164,22 +172,48 @@ def test_a_table_of_more_than_a_million_rows_is_refused_at_once() -> None:
 
 
 def test_names_that_refer_to_other_rows_are_found_and_words_are_none() -> None:
-    assert Reference("surfaces").names_in("body") == ("body",)
-    assert References("lights").names_in(("key", "rim")) == ("key", "rim")
-    assert Reference("lights", "eye").names_in("eye") == ()
-    assert Reference("lights", "eye").names_in("key") == ("key",)
-    ranges = RangesByName("surfaces", "auto", "object")
-    assert ranges.names_in("auto") == ()
+    assert Reference("surfaces").names_in("body") == ["body"]
+    assert References("lights").names_in(("key", "rim")) == ["key", "rim"]
+    assert Reference("lights", "eye").names_in("eye") == []
+    assert Reference("lights", "eye").names_in("key") == ["key"]
+    ranges = RangesByName("surfaces", "object", "auto")
+    assert list(ranges.names_in("auto")) == []
     assert list(ranges.names_in((("body", (0, 1)), ("object", (0, 1))))) == ["body"]
 
 
 def test_columns_that_refer_to_other_tables_are_known_also_inside_others() -> None:
-    assert {key: each.kind.table for key, each in references_of(Part).items()} == {"surface": "surfaces"}
+    assert [*references_of(Part)] == ["surface"]
     assert references_of(Surface) == {}
-    found = references_of(Light)
-    assert found["only_parts"].path == ("links", "only_parts")
-    light = Light("key", (0, 0, 0), links=Links(only_parts=("hood",)))
-    assert found["only_parts"].value_in(light) == ("hood",)
+    assert references_of(Light)["only_parts"].field == "links"
+
+
+def test_a_missing_misspelt_or_wrong_argument_is_found_by_type_checkers_and_at_run_time() -> None:
+    # mypy reports a comment that ignores nothing, so each of these is an error for it.
+    with pytest.raises(TypeError, match="missing 2 required positional arguments: 'name' and 'position'"):
+        Light()  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="unexpected keyword argument 'concentrtion'"):
+        Light("key", (0, 0, 0), concentrtion=1)  # type: ignore[call-arg]
+    with pytest.raises(InputError, match="concentration must be a finite number of at least 0, not 'x'"):
+        Light("key", (0, 0, 0), concentration="x")  # type: ignore[arg-type]
+    with pytest.raises(AttributeError):
+        Light("key", (0, 0, 0)).intensity = 2  # type: ignore[misc]
+    with pytest.raises(TypeError, match="'help'"):
+        number(default=1.0, tier=Tier.LIGHT)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="'at_leest'"):
+        number(default=1.0, at_leest=0, tier=Tier.LIGHT, help="")  # type: ignore[call-arg]
+    length: float = number(default=None, tier=Tier.LIGHT, help="")  # type: ignore[arg-type]
+    name: str = number(tier=Tier.LIGHT, help="")  # type: ignore[assignment]
+    del length, name
+
+
+def test_the_signature_of_a_row_class_has_plain_types_and_defaults() -> None:
+    assert str(inspect.signature(Box)).replace(f"{__name__}.", "") == (
+        "(name: str, shape: Shape = Shape(), lid: Lid | None = None, beside: str | None = None) -> None"
+    )
+    for cls in (Flap, Light, Paint, Part, Scene, Surface, View):
+        types = inspect.get_annotations(cls.__init__)
+        for key, column in fields_of(cls).items():
+            assert (type(None) in get_args(types[key])) == column.is_optional, key
 
 
 LEFT = HalfSpace("left", (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0))
@@ -262,6 +296,7 @@ def test_all_rows_are_changed_or_replaced_at_once() -> None:
 
 BY_NAME = " must be a table of half-spaces by name, not "
 A_TABLE = " must be a table of point, direction, edge_width, carried and on, not "
+NO_DIRECTION = "must be three finite numbers of at most 1e36, not (0, 0, 0); one of them must not be 0"
 ITS_NAME = ".top.name must be the name of its table, 'top', not "
 INVALID: list[tuple[Any, str]] = [
     ({"left": {"edge_widt": 1}}, ".left: there is no field 'edge_widt'; did you mean 'edge_width'?"),
@@ -278,7 +313,7 @@ INVALID: list[tuple[Any, str]] = [
     ({"": None}, f"{BY_NAME}by ''; name it by at least one character"),
     (
         {"left\ndoor": {**PLANE, "direction": (0, 0, 0)}},
-        ".'left\\ndoor'.direction must have a length above 0, not (0, 0, 0); change it",
+        f".'left\\ndoor'.direction {NO_DIRECTION}",
     ),
     (
         {0: None, "a": None},
@@ -292,7 +327,7 @@ INVALID: list[tuple[Any, str]] = [
         {"left": {"on": 3}, "top": {"point": 1, "direction": (0, 0, 0)}},
         ".left.on must be true or false, not 3\n"
         "light 'key': half_spaces.top.point must be three finite numbers of at most 1e36, not 1\n"
-        "light 'key': half_spaces.top.direction must have a length above 0, not (0, 0, 0); change it",
+        f"light 'key': half_spaces.top.direction {NO_DIRECTION}",
     ),
 ]
 FEW = " must be at most 64, not {}; leave some out"

@@ -7,12 +7,14 @@ from hypothesis import strategies as st
 
 from autocolor.arrays import half_up
 from autocolor.errors import UsageError
+from autocolor.scene.columns import BarRange
 from autocolor.widgets.bars import (
     LANE,
     Bar,
     ComponentBar,
     LevelBar,
     PercentBar,
+    bar_within,
     levels_along,
     number_text,
     rounded_to,
@@ -260,3 +262,11 @@ DRAWN = [
 @pytest.mark.parametrize(("bar", "dim", "bright"), DRAWN)
 def test_a_bar_is_drawn_as_it_was(bar: Widget, dim: int, bright: int) -> None:
     assert [checksum(bar.items(lit)) for lit in (False, True)] == [dim, bright]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "step"),
+    [(0, 1, 0.01), (0, 100, 1), (0, 180, 1), (-180, 180, 2), (3, 3.004, 2e-5), (0, 3e-9, 2e-11)],
+)
+def test_a_bar_has_round_steps_of_at_most_a_hundredth(low: float, high: float, step: float) -> None:
+    assert bar_within(low, high) == BarRange(low, high, step)

@@ -4,28 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.checks import Color, Vector
-from autocolor.scene.columns import WORLD_UNITS, BarRange, Column, Row, Tier, replaced
+from autocolor.scene.columns import WORLD_UNITS, BarRange, Row, Tier, column_of, replaced
 from autocolor.scene.kinds import (
     AngleCurve,
     AngleCurveKind,
-    Boolean,
-    ColorKind,
     CurveKind,
-    Number,
-    OneOf,
-    Text,
-    VectorKind,
     Whole,
+    boolean,
+    color,
+    coordinates,
+    number,
+    one_of,
+    text,
+    vector,
 )
-from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References
+from autocolor.scene.row_kinds import NamedRows, OneRowOf, Reference, References, nested, table_row
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
 from autocolor.widgets.rows import NAMES_A_PAGE, TableNames, World, rows_of
@@ -37,82 +37,88 @@ SIZE = math.sqrt(4 + 16 + 1)
 AREA = Area(505, 0, 639, 15)
 
 
-@dataclass(frozen=True)
+@table_row
 class Shutter(Row):
-    low: Annotated[float, Column(Number(endless=-math.inf), MIX, "Low.", WORLD_UNITS)] = -math.inf
-    high: Annotated[float, Column(Number(endless=math.inf), MIX, "High.", WORLD_UNITS)] = math.inf
-    on: Annotated[bool, Column(Boolean(), MIX, "Whether it is used.")] = True
+    low: float = number(default=-math.inf, endless=-math.inf, unit=WORLD_UNITS, tier=MIX, help="Low.")
+    high: float = number(default=math.inf, endless=math.inf, unit=WORLD_UNITS, tier=MIX, help="High.")
+    on: bool = boolean(default=True, tier=MIX, help="Whether it is used.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Shutters(Row):
-    x: Annotated[Shutter | None, Column(Nested(Shutter), MIX, "Across.")] = None
-    z: Annotated[Shutter | None, Column(Nested(Shutter), MIX, "Upward.")] = None
+    x: Shutter | None = nested(Shutter, default=None, tier=MIX, help="Across.")
+    z: Shutter | None = nested(Shutter, default=None, tier=MIX, help="Upward.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Haze(Row):
-    density: Annotated[float, Column(Number(0, 1), MIX, "How dense.")] = 0.25
+    density: float = number(default=0.25, at_least=0, at_most=1, tier=MIX, help="How dense.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Smooth(Row):
-    grain: Annotated[float, Column(Number(0, 1), MIX, "How fine.")] = 0.5
+    grain: float = number(default=0.5, at_least=0, at_most=1, tier=MIX, help="How fine.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Coarse(Row):
-    size: Annotated[int, Column(Whole(1, 9), MIX, "How coarse.")] = 3
+    size: int = column_of(Whole(1, 9), default=3, tier=MIX, help="How coarse.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Hood(Row):
     """One of any number, by name."""
 
     noun: ClassVar[str] = "hood"
 
-    name: Annotated[str, Column(Text(), MIX, "Its name.")]
-    point: Annotated[Vector, Column(VectorKind(), MIX, "Where it is.", WORLD_UNITS)] = (0.0, 0.0, 0.0)
-    width: Annotated[float, Column(Number(at_least=0), MIX, "How wide.", WORLD_UNITS)] = 0.0
-    length: Annotated[float | None, Column(Number(at_least=0, above=True), MIX, "How long.", WORLD_UNITS)] = (
-        None
+    name: str = text(tier=MIX, help="Its name.")
+    point: Vector = coordinates(default=(0.0, 0.0, 0.0), tier=MIX, help="Where it is.")
+    width: float = number(default=0.0, at_least=0, unit=WORLD_UNITS, tier=MIX, help="How wide.")
+    length: float | None = number(
+        default=None, at_least=0, above=True, unit=WORLD_UNITS, tier=MIX, help="How long."
     )
-    on: Annotated[bool, Column(Boolean(), MIX, "Whether it is used.")] = True
+    on: bool = boolean(default=True, tier=MIX, help="Whether it is used.")
 
 
-@dataclass(frozen=True)
+@table_row
 class Lamp(Row):
     """One column of each kind."""
 
-    name: Annotated[str, Column(Text(), MIX, "Its name.")] = "lamp"
-    share: Annotated[float, Column(Number(0, 1), MIX, "A share.")] = 0.5
-    tilt_angle: Annotated[
-        float | None, Column(Number(0, 180), MIX, "A tilt.", "degrees", bar=BarRange(0, 90, 1), start=30.0)
-    ] = None
-    blades: Annotated[int, Column(Whole(2, 12), MIX, "Blades.")] = 6
-    count: Annotated[int | None, Column(Whole(1, 100), MIX, "A count.")] = None
-    reach: Annotated[float, Column(Number(), MIX, "How far.", WORLD_UNITS)] = 1.0
-    on: Annotated[bool, Column(Boolean(), MIX, "Whether it is on.")] = True
-    mode: Annotated[str, Column(OneOf(("wide", "narrow")), MIX, "Its mode.")] = "wide"
-    tint: Annotated[Color, Column(ColorKind(), MIX, "Its tint.")] = (255, 0, 0)
-    place: Annotated[Vector, Column(VectorKind(), MIX, "Where it is.", WORLD_UNITS)] = (0.0, 0.0, 0.0)
-    facing: Annotated[Vector | None, Column(VectorKind(has_length=True), MIX, "Where it faces.")] = None
-    finish: Annotated[Row, Column(OneRowOf({"smooth": Smooth, "coarse": Coarse}), MIX, "Its finish.")] = (
-        field(default_factory=Smooth)
+    name: str = text(default="lamp", tier=MIX, help="Its name.")
+    share: float = number(default=0.5, at_least=0, at_most=1, tier=MIX, help="A share.")
+    tilt_angle: float | None = number(
+        default=None,
+        at_least=0,
+        at_most=180,
+        unit="degrees",
+        bar=BarRange(0, 90, 1),
+        start=30.0,
+        tier=MIX,
+        help="A tilt.",
     )
-    haze: Annotated[Haze, Column(Nested(Haze, inline=True), MIX, "Its haze.")] = field(default_factory=Haze)
-    shutters: Annotated[Shutters, Column(Nested(Shutters), MIX, "Its shutters.")] = field(
-        default_factory=Shutters
+    blades: int = column_of(Whole(2, 12), default=6, bar=BarRange(2, 12, 1), tier=MIX, help="Blades.")
+    count: int | None = column_of(
+        Whole(1, 100), default=None, bar=BarRange(1, 100, 1), tier=MIX, help="A count."
     )
-    sheen: Annotated[
-        AngleCurve | None,
-        Column(AngleCurveKind(0.1, ((0.0, 0.2), (40.0, 0.4), (90.0, 1.0))), MIX, "Its sheen."),
-    ] = None
-    curve: Annotated[str, Column(CurveKind({"linear": 1}), MIX, "Its curve.")] = "linear"
-    hoods: Annotated[tuple[Hood, ...], Column(NamedRows(Hood), MIX, "Its hoods.")] = ()
-    follows: Annotated[str | None, Column(Reference("lamps", "sun"), MIX, "What it follows.")] = None
-    post: Annotated[str, Column(Reference("posts"), MIX, "Its post.")] = "a"
-    walls: Annotated[tuple[str, ...] | None, Column(References("walls"), MIX, "Its walls.")] = None
+    reach: float = number(default=1.0, unit=WORLD_UNITS, tier=MIX, help="How far.")
+    on: bool = boolean(default=True, tier=MIX, help="Whether it is on.")
+    mode: str = one_of(("wide", "narrow"), default="wide", tier=MIX, help="Its mode.")
+    tint: Color = color(default=(255, 0, 0), tier=MIX, help="Its tint.")
+    place: Vector = coordinates(default=(0.0, 0.0, 0.0), tier=MIX, help="Where it is.")
+    facing: Vector | None = vector(default=None, tier=MIX, help="Where it faces.")
+    finish: Row = column_of(
+        OneRowOf({"smooth": Smooth, "coarse": Coarse}), default=Smooth(), tier=MIX, help="Its finish."
+    )
+    haze: Haze = nested(Haze, default=Haze(), inline=True, tier=MIX, help="Its haze.")
+    shutters: Shutters = nested(Shutters, default=Shutters(), tier=MIX, help="Its shutters.")
+    sheen: AngleCurve | None = column_of(
+        AngleCurveKind(0.1, ((0.0, 0.2), (40.0, 0.4), (90.0, 1.0))), default=None, tier=MIX, help="Its sheen."
+    )
+    curve: object = column_of(CurveKind({"linear": 1}), default="linear", tier=MIX, help="Its curve.")
+    hoods: tuple[Hood, ...] = column_of(NamedRows(Hood), default=(), tier=MIX, help="Its hoods.")
+    follows: str | None = column_of(Reference("lamps", "sun"), default=None, tier=MIX, help="What leads.")
+    post: str = column_of(Reference("posts"), default="a", tier=MIX, help="Its post.")
+    walls: tuple[str, ...] | None = column_of(References("walls"), default=None, tier=MIX, help="Its walls.")
 
 
 class Table:
