@@ -210,7 +210,10 @@ LIST = "variants must be a list of tables or of Variants, not"
 WRITTEN = "write them as in [{'ambient': 0.1}, {'ambient': 0.2}]"
 GRID = "a grid must have 1 to 100,000 variants, not"
 VARY = "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not"
-ENDS = "--vary a: START and STOP must be finite, and COUNT 2 to 100,000, not"
+ENDS = (
+    "--vary a: evenly spaced numbers must be START:STOP:COUNT, finite and with a whole COUNT from 2 to 100,000,"
+    " not"
+)
 FORM = "; write it as in surfaces.body.object_color=red,navy"
 WRONG: Any = {"a": 1}
 
@@ -247,7 +250,7 @@ test_wrong_variants_are_refused = refused(
         ),
         *(
             (lambda text=text: varied(f"a={text}"), f"{ENDS} {text!r}; correct it")
-            for text in ("0:1:1", "0:1e999:3", "0:-:3")
+            for text in ("0:1:1", "0:1e999:3", "0:2:0.5")
         ),
     ],
 )
