@@ -211,8 +211,8 @@ WRITTEN = "write them as in [{'ambient': 0.1}, {'ambient': 0.2}]"
 GRID = "a grid must have 1 to 100,000 variants, not"
 VARY = "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not"
 ENDS = (
-    "--vary a: evenly spaced numbers must be START:STOP:COUNT, finite and with a whole COUNT from 2 to 100,000,"
-    " not"
+    "--vary a: evenly spaced numbers must be START:STOP:COUNT, finite and with a whole COUNT from 2 to"
+    " 100,000, not"
 )
 FORM = "; write it as in surfaces.body.object_color=red,navy"
 WRONG: Any = {"a": 1}
