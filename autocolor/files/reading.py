@@ -105,10 +105,9 @@ def refuse_irregular(path: Path, status: os.stat_result) -> None:
 
 def unreadable(path: Path, error: OSError) -> InputError:
     """The error that says why a file could not be read."""
-    name = checks.brief(str(path))
     if error.errno in (errno.ENOENT, errno.ENOTDIR):
-        return MissingInputError(f"{name}: there is no such file or folder; check the name")
-    return InputError(f"{name}: it cannot be read ({reason_of(error)}); check the name and its permissions")
+        return MissingInputError(f"{path}: there is no such file or folder; check the name")
+    return InputError(f"{path}: it cannot be read ({reason_of(error)}); check the name and its permissions")
 
 
 MOST_NESTED: Final = 100

@@ -60,8 +60,7 @@ from autocolor.mapping.intensity import (
     fractions_by_surface,
     has_extent,
     levels_of,
-    mapped_ranges,
-    stage_surfaces,
+    ranges_of,
 )
 from autocolor.mapping.legend import legend
 from autocolor.rendering import rendering
@@ -301,8 +300,8 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
         )
     if not scene.lights:
         raise InputError("a page with lights must have a light in its scene, not none; leave the lights out")
-    extents = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene))
-    if not any(has_extent(extent) for extent in extents.values()):
+    extents = ranges_of(scene, picture)
+    if isinstance(scene.exposure, str) and not has_extent(picture.relative_ranges[WHOLE]):
         raise InputError(
             "the picture of a page with lights must have more than one intensity, or there is no exposure to"
             " hold; switch a light on, or leave the lights out"

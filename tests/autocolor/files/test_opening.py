@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from autocolor.checks import brief
 from autocolor.errors import InputError, UsageError
 from autocolor.files.opening import (
     TWO_TABLES,
@@ -93,7 +92,7 @@ def test_strict_reading_refuses_repairs(folder: Path) -> None:
 
 def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
     for name in ("none", "none.toml", "none/none.obj"):
-        sentence = f"{brief(str(tmp_path / name))}: there is no such file or folder; check the name"
+        sentence = f"{tmp_path / name}: there is no such file or folder; check the name"
         assert refusal(read_scene, tmp_path / name) == sentence
     assert refusal(read_scene, tmp_path) == (
         f"{tmp_path}: a scene's folder must contain a scene.toml or nodes.csv and polygons.csv or nodes.npy"

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from autocolor.checks import brief
 from autocolor.errors import InputError, MissingInputError, UsageError
 from autocolor.files.paths import check_stem, file_stem, free_path, path_within
 from autocolor.files.reading import MOST_NESTED, bounded_json, read_bytes, read_whole
@@ -55,8 +54,8 @@ def test_a_name_of_no_file_is_refused(tmp_path: Path) -> None:
     advice = "; check the name and its permissions"
     for path, sentence in (
         (Path("a\0b.obj"), "a file name must be valid on this system, not 'a\\x00b.obj'; correct it"),
-        (Path("a" * 300), f"{'a' * 38}...{'a' * 38}: it cannot be read (file name too long){advice}"),
-        (none, f"{brief(str(none))}: there is no such file or folder; check the name"),
+        (Path("a" * 300), f"{'a' * 300}: it cannot be read (file name too long){advice}"),
+        (none, f"{none}: there is no such file or folder; check the name"),
     ):
         assert refusal(read_bytes, path, 100) == sentence
     with pytest.raises(MissingInputError):

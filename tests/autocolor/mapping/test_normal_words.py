@@ -101,7 +101,10 @@ def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:
     everything = [each for values in intensity_of.values() for each in values]
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
     whole = held.get(OBJECT, range_of(everything or [0], scene.exposure))
-    if OBJECT not in held and max(everything or [0]) <= scene.ambient * (1 + 2.0**-20):
+    # Whether there is light is decided by rounding, too.
+    most, dark = max(everything or [0]), scene.ambient * (1 + 2.0**-20)
+    assume(most == scene.ambient or most > dark * (1 + 1e-5))
+    if OBJECT not in held and most <= dark:
         # Nothing but ambient light is mapped to the lowest level.
         whole = whole[0], 1e9 * max(whole[1], 1)
     for each in image.normals.slices:

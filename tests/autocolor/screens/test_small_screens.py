@@ -258,7 +258,7 @@ PAGES = {
     "reflectance": 571573069,
     "mixing": 1_328_086_564,
     "blending": 4232246749,
-    "mapping": 2296462326,
+    "mapping": 2498891683,
     "scalar": 648425415,
     "variants": 378967624,
     "history": 158829111,
