@@ -251,10 +251,10 @@ def _least_of_rows(keys: Numbers, size: int) -> Numbers:
 # Interpolation along visible spans.
 #
 # Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
-# interpolation, along the edges and then along the span. In a scene with `interpolation = "linear"`, that is
-# linear in the picture, as it was in 1983. Departs: otherwise it is perspective-correct: the normal is
-# halfway between the normals of two nodes where the point is halfway between the nodes on the surface, not in
-# the picture.
+# interpolation, along the edges and then along the span. Departs: in 1983 that was linear in the picture, as
+# in a scene with `interpolation = "linear"` here. Otherwise it is perspective-correct: the normal is halfway
+# between the normals of two nodes where the point is halfway between the nodes on the surface, not in the
+# picture.
 
 
 def interpolated_points(
