@@ -11,7 +11,6 @@ from autocolor.scene.geometry.planes import SharedPlanes, shared_planes
 from autocolor.testing import meshes
 from tests.autocolor.decals import ROUNDINGS, decal_on_ground
 from tests.small import cube, grid, sphere
-from tests.tables import first
 
 GROUND = grid(3, 2, (-1, 0, -1), (2, 0, 0), (0, 0, 2), "ground")
 DECAL = grid(2, 2, (-0.4, 0, -0.3), (0.5, 0, 0.1), (-0.1, 0, 0.5), "decal")
@@ -154,10 +153,9 @@ def test_a_third_polygon_at_an_edge_shares_the_plane_of_the_two_others() -> None
         assert over[1:] == [0, 0]
 
 
-@pytest.mark.parametrize("seed", first(1, [19, 31, 35, 48]))
-def test_a_finely_divided_ground_with_decals_is_one_plane(seed: int) -> None:
+def test_a_finely_divided_ground_with_decals_is_one_plane() -> None:
     # No polygon is large enough to tell the plane of all others, and corners are rounded to float32.
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(19)
     flat = grid(170, 170, (-1, -1, 0), (2, 0, 0), (0, 2, 0), "ground")
     moves = random.uniform(-0.4, 0.4, (len(flat.coordinates), 2)) * (2 / 170)
     ground = moved(flat, flat.coordinates + np.c_[moves, np.zeros(len(moves))])
