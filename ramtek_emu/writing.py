@@ -237,11 +237,16 @@ def _new_part(path: Path) -> tuple[Path, int]:
         number += 1
         part = path.with_name(f".{path.name[:100]}.{number}.part")
         _remove_left(part)
+        # An interrupt may come before the system says that the file is there.
+        _PARTS.add(part)
         try:
             flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
             descriptor = os.open(part, flags, 0o666)
-        except FileExistsError:
-            continue
+        except OSError as error:
+            _PARTS.discard(part)
+            if isinstance(error, FileExistsError):
+                continue
+            raise
         try:
             lock(descriptor)
             is_ours = _is_named(part, descriptor)
@@ -252,8 +257,8 @@ def _new_part(path: Path) -> tuple[Path, int]:
             # Without locks, as on some network drives, no program removes files of others.
             is_ours = True
         if is_ours:
-            _PARTS.add(part)
             return part, descriptor
+        _PARTS.discard(part)
         os.close(descriptor)
 
 
