@@ -192,7 +192,9 @@ def held_exposure(
     held = {} if isinstance(exposure, str) else dict(exposure)
     each_has_its_own = scaling == "surface" and OBJECT not in held
     for number, extent in following_ranges(picture, scaling, exposure, stage).items():
-        if (number == WHOLE or each_has_its_own) and has_extent(extent):
+        # A trimmed range of one intensity is no range to hold.
+        has_range = has_extent(extent) and has_extent(picture.relative_ranges[number])
+        if (number == WHOLE or each_has_its_own) and has_range:
             name = picture.surfaces[number - 1] if number else OBJECT
             if number and name == OBJECT:
                 continue

@@ -23,6 +23,7 @@ from autocolor.mapping.intensity import (
     levels_of,
     mapped_ranges,
     ordered_thresholds,
+    stage_surfaces,
     words_of,
 )
 from autocolor.mapping.ranges import level_ranges
@@ -327,7 +328,7 @@ def test_held_ranges_map_as_before_and_the_others_come_from_the_picture(scene: S
         assert tuple(ranges[surface.surface_number]) == pytest.approx(expected)
 
     # If the exposure is held now, no word changes, and what was held stays.
-    exposure = held_exposure(picture, scene.scaling, scene.exposure)
+    exposure = held_exposure(picture, scene.scaling, scene.exposure, stage_surfaces(scene))
     if held:
         assert held.items() <= dict(exposure).items()  # type: ignore[arg-type]
     now, then = display_image(scene, picture), display_image(scene.replace(exposure=exposure), picture)
