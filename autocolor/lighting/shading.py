@@ -155,7 +155,8 @@ def _reflect(
     """Fill in both planes at some points; 0 where `is_lit` is false.
 
     The surfaces of the points end at `ends` and have these `models`. Points at which the `rounding` of
-    cosines counts are computed again by the definitions.
+    cosines counts are computed again by the definitions: the specular plane only, where it counts in the
+    model's factor alone.
     """
     share = None if is_lit is None or is_lit.all() else is_lit.astype(np.float32)
     for _, left in shares_of(light, rays):
@@ -179,7 +180,11 @@ def _reflect(
             places = np.flatnonzero(wanted if is_lit is None else wanted & is_lit[here])
             if len(places):
                 exact = exact_rays_to(light, some.at(places).vectors(slice(None)))
-                planes[:, places] = light_at(light, exact, model)
+                computed = light_at(light, exact, model)
+                planes[SPECULAR, places] = computed[SPECULAR]
+                if again is not None:
+                    of_share = again[here][places]
+                    planes[DIFFUSE, places[of_share]] = computed[DIFFUSE, of_share]
 
 
 @underflowing

@@ -331,7 +331,7 @@ class NamedRows(Kind[tuple[SomeRow, ...]]):
     def _changed(
         self, rows: Mapping[str, Any], name: object, given: object, path: Path, problems: list[Problem]
     ) -> Any:
-        """The row of a name after a change: of keys of it, to another row, or to None."""
+        """The row of a name after a change, which gives some of its keys, another row, or None."""
         if not isinstance(name, str) or not name:
             text = f"{self.rule()}, not by {shown(name)}; name it by at least one character"
             return refused(problems, path, text)
