@@ -18,8 +18,10 @@ from autocolor.scene.following import detached
 from autocolor.scene.lights import Flap, Light
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 
-FARTHEST_PLANE: Final = 1e15
-"""The largest distance of a plane, in units: farther than any point."""
+FARTHEST: Final = 1e15
+"""The largest distance of a plane or a light, in units, farther than any point.
+
+The rays of such a light are parallel, and float32 can hold the square of the distance."""
 
 LEAST_WIDTH: Final = 1e-20
 """The least edge width, in units: far below the rounding of points, and float32 holds any quotient by it."""
@@ -82,7 +84,7 @@ def falloff_of(light: Light, points: VisiblePoints) -> Falloff | None:
     """The falloff of a light in the unit of some points, if it has any."""
     if light.falloff == "none" or light.reach is None:
         return None
-    reach = min(max(light.reach / points.unit, LEAST_REACH), FARTHEST_PLANE)
+    reach = min(max(light.reach / points.unit, LEAST_REACH), FARTHEST)
     return Falloff(reach, 1 if light.falloff == "linear" else 2)
 
 
@@ -174,7 +176,7 @@ def side_of(points: VisiblePoints, name: str, direction: Vector, least: float, e
     The unit vector is the `direction` from the plane into the light. `edge_width` is in world units.
     """
     coordinates = np.array([points.world_coordinate(axis) for axis in range(3)])
-    in_units = min(max(least / points.unit, -FARTHEST_PLANE), FARTHEST_PLANE)
+    in_units = min(max(least / points.unit, -FARTHEST), FARTHEST)
     # A surface that lies on a sharp side is lit: allow for the rounding of its points to float32.
     slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.largest_distance
     row = np.array(direction) @ coordinates - (np.array([0, 0, 0, in_units]) - slack)

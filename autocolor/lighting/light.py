@@ -41,9 +41,6 @@ from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import Phong, ReflectionModel
 from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW
 
-FARTHEST: Final = 1e15
-"""The largest distance of a light, in units: its rays are parallel, and float32 can hold its square."""
-
 LEAST_DISTANCE: Final = 3e-19
 """The least distance of a point from a light, in units, so that none is 0; float32 holds its square."""
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from autocolor.arrays import ROUNDING, Floats, Singles, columns, unit_vector
 from autocolor.checks import Vector
-from autocolor.lighting.controls import falloff_of, sides_of
-from autocolor.lighting.light import FARTHEST, GRAZING, LEAST_DISTANCE, CameraLight, Rays, rays_to
+from autocolor.lighting.controls import FARTHEST, falloff_of, sides_of
+from autocolor.lighting.light import GRAZING, LEAST_DISTANCE, CameraLight, Rays, rays_to
 from autocolor.scene.lights import Light, middle_between
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import NORMAL, POINT, POINT_SQUARED, REFLECTED_VIEW, VisiblePoints

@@ -13,7 +13,7 @@ from autocolor.arrays import Floats, Singles
 from autocolor.checks import Vector
 from autocolor.lighting import controls
 from autocolor.lighting.controls import (
-    FARTHEST_PLANE,
+    FARTHEST,
     Falloff,
     flap_sides,
     flaps_of,
@@ -62,7 +62,7 @@ def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
 def test_a_plane_may_be_farther_than_a_single_can_hold(least: float, inside: bool) -> None:
     points = wall_points()
     side = side_of(points, "far", (1.0, 0.0, 0.0), least, 0.0)
-    assert abs(side.row[3]) == pytest.approx(FARTHEST_PLANE)
+    assert abs(side.row[3]) == pytest.approx(FARTHEST)
     assert is_inside(side, points.rows[POINT]).tolist() == [inside] * len(points.pixels)
 
 

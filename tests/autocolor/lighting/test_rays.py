@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from autocolor import Light, View
 from autocolor.checks import Vector
-from autocolor.lighting.light import FARTHEST, Rays, exact_rays_to
+from autocolor.lighting.controls import FARTHEST
+from autocolor.lighting.light import Rays, exact_rays_to
 from autocolor.lighting.rays import camera_light, direction_to_light, fast_rays, middle_of
 from autocolor.testing import directions, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import REFLECTED_VIEW, VisiblePoints
