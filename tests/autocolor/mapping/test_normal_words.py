@@ -111,7 +111,11 @@ def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:
     for each in image.normals.slices:
         surface = scene.surfaces[each.surface_number - 1]
         values = intensity_of[surface.name]
-        low, high = range_of(values, scene.exposure)
+        brightest, extent = max(values), max(values) - min(values)
+        # Whether a surface has an extent may be decided by rounding.
+        assume(not 1e-7 * brightest < extent < 1e-5 * brightest)
+        # A surface without extent is not trimmed, and has the range of the object.
+        low, high = whole if extent <= 1e-7 * brightest else range_of(values, scene.exposure)
         if scene.scaling == "object" or OBJECT in held or is_dark:
             low, high = whole
         low, high = held.get(surface.name, (low, high))
