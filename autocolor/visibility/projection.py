@@ -422,7 +422,7 @@ def _planes_in_view(shared: SharedPlanes, view: View, unit: float, polygon_numbe
 # numbers. Only the nodes of the polygons that may be visible are then put into camera space, to the same
 # bits.
 #
-# Measured: ten million quads take 60 MB for a moment instead of 760, and less time, too.
+# Measured: ten million quads take 209 MB beyond their tables instead of 868, and 0.69 of the time.
 
 
 class NodePlaces(NamedTuple):
