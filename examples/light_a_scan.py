@@ -51,7 +51,7 @@ def main(folder: Path = Path(), scan: Path | None = None) -> None:
     lit = smooth.replace(lights=lights, ambient=0.03).with_light("rim", flaps={"z": flap})
 
     a, b, c, d = (
-        autocolor.image(scene, autocolor.render(scene, LINES, ELEMENTS, smooth=2))
+        autocolor.image(scene, autocolor.render(scene, (ELEMENTS, LINES), smooth=2))
         for scene in (lying, upright, smooth, lit)
     )
     Image.fromarray(np.vstack([np.hstack([a, b]), np.hstack([c, d])])).save(folder / "scan.png")

@@ -197,7 +197,7 @@ def vase() -> tuple[list[tuple[float, float, float]], list[list[int]]]:
 
 def panel_of(scene: Scene) -> Field:
     """The picture of a scene at the size of a panel."""
-    return image(scene, render(scene, 240, 320, smooth=4))
+    return image(scene, render(scene, (320, 240), smooth=4))
 
 
 def field_of(path: Path) -> Field:

@@ -45,7 +45,7 @@ AROUND = frames(SCENE, [], 4, turn=360)
 def rendered(scene: Scene, made: tuple[Variant, ...]) -> list[Bytes]:
     """The colors of frames, each rendered by itself."""
     scenes = [scene_with(scene, frame.settings) for frame in made]
-    return [image(each, render(each, SIZE[1], SIZE[0])) for each in scenes]
+    return [image(each, size=SIZE) for each in scenes]
 
 
 @pytest.fixture
@@ -93,7 +93,7 @@ def test_a_frame_costs_its_edit_from_the_frame_before(
 
 
 def test_a_picture_alone_is_animated_without_rendering(visible: list[object], tmp_path: Path) -> None:
-    picture = render(SCENE, 2 * SIZE[1], 2 * SIZE[0], smooth=1)
+    picture = render(SCENE, (2 * SIZE[0], 2 * SIZE[1]), smooth=1)
     visible.clear()
     animate((SCENE, picture), FADE, tmp_path / "film.webp")
     assert visible == []
