@@ -24,7 +24,7 @@ from autocolor.mapping.legend import legend
 from autocolor.mapping.normal_words import NormalImage
 from autocolor.mapping.ranges import FEWEST_LEVELS, WORDS
 from autocolor.rendering import SIZE, checked_size, render
-from autocolor.scene.scene import NORMALS, Scene
+from autocolor.scene.scene import NORMALS, Scene, check_scene
 from autocolor.sending import configuration_of, send_image, shown_colors
 from ramtek_emu import HostPort
 
@@ -73,6 +73,7 @@ def image(
     are as in `save_image`. Raises InputError if an intensity is not finite, or if the surfaces of the picture
     are not those of the scene; UsageError as `save_image`.
     """
+    _check(scene, picture)
     picture, smooth = _picture_of(scene, picture, size, smooth)
     shown_image = display_image(scene, picture)
     return averaged(shown_image.entries, shown_image.words, smooth)
@@ -113,6 +114,7 @@ def save_image(
     """
     from ramtek_emu.png import png_bytes
 
+    _check(scene, picture)
     check_suffix(path, ".png", "an image")
     check_png_level(level)
     refuse_output(path, overwrite=overwrite)
@@ -183,8 +185,8 @@ SMOOTHNESS: Final = 2
 
 Compared on the coupe, the bracket and the teapot: with 2, the stairs at edges are gone and the dots of thin
 lines faint, for three times the time. With 3, the shut lines of the coupe are even, for six times the time,
-but 3840 x 2160 pixels exceed the memory budget. With 4, no difference is seen at a glance. The
-default of `render` is 1: a picture has the lines and elements that its user asks for.
+but 3840 x 2160 pixels exceed the memory budget. With 4, no difference is seen at a glance. The default
+of `render` is 1: a picture has the lines and elements that its user asks for.
 """
 
 MOST_SMOOTH_PIXELS: Final = 10_000_000
@@ -199,6 +201,14 @@ def default_smooth(size: tuple[int, int]) -> int:
     return SMOOTHNESS if width * height <= MOST_SMOOTH_PIXELS else 1
 
 
+def _check(scene: Scene, picture: Picture | None) -> None:
+    """Raise UsageError unless the scene is a scene; `check_surfaces` also checks a given picture."""
+    if picture is None:
+        check_scene(scene)
+    else:
+        check_surfaces(scene, picture)
+
+
 def _picture_of(
     scene: Scene, picture: Picture | None, size: tuple[int, int] | None, smooth: int | None
 ) -> tuple[Picture, int]:
@@ -207,7 +217,6 @@ def _picture_of(
         size = SIZE if size is None else size
         picture = render(scene, size, smooth=default_smooth(size) if smooth is None else smooth)
         return picture, picture.smooth
-    check_surfaces(scene, picture)
     if size is not None:
         raise UsageError(
             f"a size must be for a scene without its picture, not for a picture of {picture.elements} x"

@@ -44,8 +44,7 @@ def shown(scene: Scene) -> tuple[Studio, Ramtek9300]:
 
 def beside(*scenes: Scene) -> Image.Image:
     """The pictures of scenes, side by side."""
-    pictures = [autocolor.render(scene, (200, 150), smooth=2) for scene in scenes]
-    fields = [autocolor.image(*pair) for pair in zip(scenes, pictures, strict=True)]
+    fields = [autocolor.image(scene, size=(200, 150)) for scene in scenes]
     return Image.fromarray(np.hstack(fields)).quantize(192)
 
 

@@ -189,10 +189,9 @@ test_what_is_refused = refused(
     [
         image,
         lambda scene, picture: send_picture(scene, picture, Ramtek9300(SMALL)),
-        lambda scene, picture: save_image(NOWHERE / "cube.png", scene, picture),
         *(
             lambda scene, picture, save=save: save(NOWHERE / "cube", scene, picture)
-            for save in (save_words, save_layers, write_picture)
+            for save in (save_image, save_words, save_layers, write_picture)
         ),
     ],
 )
