@@ -48,7 +48,7 @@ def test_a_stage_is_told_with_its_milliseconds(
 
 def test_the_library_says_nothing_unless_asked() -> None:
     code = (
-        "import logging, autocolor; autocolor.render(autocolor.read_scene('scenes/pyramid'), 20, 30);"
+        "import logging, autocolor; autocolor.render(autocolor.read_scene('scenes/pyramid'), (30, 20));"
         "print(logging.getLogger('autocolor').handlers)"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)

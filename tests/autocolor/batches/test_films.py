@@ -40,6 +40,7 @@ COLOR, POSITION = f"surfaces.{SCENE.parts[0].surface}.object_color", "lights.key
 FADE = frames(SCENE, [{COLOR: "red"}, {COLOR: "blue"}, {COLOR: "red"}], 6)
 SWEEP = frames(SCENE, [{POSITION: [-4, -4, 3]}, {POSITION: [4, -4, 3]}], 5)
 AROUND = frames(SCENE, [], 4, turn=360)
+SMOOTH = render(SCENE, SIZE, smooth=2)
 
 
 def rendered(scene: Scene, made: tuple[Variant, ...]) -> list[Bytes]:
@@ -246,5 +247,7 @@ def test_a_wrong_name_or_rate_is_refused_before_anything_is_rendered(
         animate(SCENE, FADE, tmp_path / name, **options)
     assert sentence in str(refusal.value)
     assert visible == []
+    with pytest.raises(UsageError, match="a stream must have smooth=1"):
+        animate((SCENE, SMOOTH), FADE, tmp_path / "film.ramtek")
     with pytest.raises(UsageError, match="an animation must have at least one frame, not none"):
         animate(SCENE, [], tmp_path / "film.webp")
