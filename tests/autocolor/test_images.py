@@ -140,12 +140,7 @@ test_what_is_refused = refused(
             " smooth=4",
         ),
         (
-            lambda: save_image(NOWHERE / "wall.png", WALL, WALL_PICTURE, smooth=3),
-            "the lines and elements of a picture must be multiples of smooth, 3, not 6 and 8; render with"
-            " smooth=3",
-        ),
-        (
-            lambda: save_image(NOWHERE / "wall.png", WALL, WALL_PICTURE, size=(8, 6)),
+            lambda: image(WALL, WALL_PICTURE, size=(8, 6)),
             "a size must be for a scene without its picture, not for a picture of 8 x 6 pixels; leave one of"
             " them out",
         ),
