@@ -31,6 +31,7 @@ from autocolor.scene.row_kinds import (
     Reference,
     References,
     RowList,
+    Table,
     nested,
     references_of,
     table_row,
@@ -92,8 +93,8 @@ class Box(Row):
 class Stack(Row):
     """A row with a table."""
 
-    boxes: tuple[Box, ...] = column_of(
-        RowList(Box, by_name=True), default=(), tier=Tier.FRAME, help="The boxes."
+    boxes: Table[Box] = column_of(
+        RowList(Box, by_name=True), default=Table(), tier=Tier.FRAME, help="The boxes."
     )
 
 
