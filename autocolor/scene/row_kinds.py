@@ -160,7 +160,7 @@ class OneRowOf(Kind[SomeRow]):
 RowOfTable = TypeVar("RowOfTable", bound=Row, covariant=True)
 
 
-class Table(tuple[RowOfTable, ...]):
+class TableRows(tuple[RowOfTable, ...]):
     """The rows of a table: a tuple whose rows have names, so that `scene.lights["key"]` is a row, too.
 
     A slice is a plain tuple. Raises UsageError, with the closest name, for a name that no row has.
@@ -197,7 +197,7 @@ def place_named(rows: Sequence[Row], name: str) -> int:
 
 
 @dataclass(frozen=True)
-class RowList(Kind[Table[SomeRow]]):
+class RowList(Kind[TableRows[SomeRow]]):
     """A table: rows of a class with unique names; scene files write them `by_name` or as an array."""
 
     row_class: type[SomeRow]
@@ -210,7 +210,7 @@ class RowList(Kind[Table[SomeRow]]):
         if not isinstance(value, (list, tuple)) or len(value) > MOST_ROWS:
             return refused(problems, path, f"{self.rule()}, not {shown(value)}")
         nested = Nested(self.row_class)
-        rows = Table(
+        rows = TableRows(
             row if type(row) is self.row_class else nested.validated(row, (*path, place), problems)
             for place, row in enumerate(value)
         )

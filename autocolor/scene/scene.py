@@ -60,7 +60,7 @@ from autocolor.scene.rigs import Rig, axis_number, mirrored
 from autocolor.scene.row_kinds import (
     RangesByName,
     RowList,
-    Table,
+    TableRows,
     nested,
     place_named,
     references_of,
@@ -108,13 +108,13 @@ class Scene(Row):
     """
 
     mesh: Mesh = column_of(Instance(Mesh), tier=Tier.FRAME, help="The node table and the polygon table.")
-    parts: Table[Part] = column_of(
+    parts: TableRows[Part] = column_of(
         RowList(Part, by_name=True), tier=Tier.FRAME, help="The parts, which are groups of polygons."
     )
-    surfaces: Table[Surface] = column_of(
+    surfaces: TableRows[Surface] = column_of(
         RowList(Surface, by_name=True), tier=Tier.FRAME, help="The surface types."
     )
-    lights: Table[Light] = column_of(RowList(Light), tier=Tier.MIX, help="The lights.")
+    lights: TableRows[Light] = column_of(RowList(Light), tier=Tier.MIX, help="The lights.")
     view: View = nested(View, tier=Tier.FRAME, help="The eye position and the view direction.")
     ambient: float = number(
         default=0.1,
@@ -180,9 +180,9 @@ class Scene(Row):
         tier=Tier.NOTHING,
         help="The axis toward which the object faces; it names the views from the sides.",
     )
-    views: Table[NamedView] = column_of(
+    views: TableRows[NamedView] = column_of(
         RowList(NamedView),
-        default=Table(),
+        default=TableRows(),
         tier=Tier.NOTHING,
         help="The named views, which can become the view.",
     )
@@ -261,9 +261,9 @@ class Scene(Row):
         return self.lights[name]
 
     @property
-    def lights_in_world(self) -> Table[Light]:
+    def lights_in_world(self) -> TableRows[Light]:
         """The lights in object coordinates, whatever they follow."""
-        return Table(lights_in_world(self.lights, self.view))
+        return TableRows(lights_in_world(self.lights, self.view))
 
     def light_in_world(self, name: str) -> Light:
         """The light of that name in object coordinates. Raises UsageError if it does not exist."""
@@ -321,7 +321,7 @@ class Scene(Row):
         if paint == surface.paint:
             return self
         row = with_values(surface, {"paint": paint})
-        rows = Table((*self.surfaces[:place], row, *self.surfaces[place + 1 :]))
+        rows = TableRows((*self.surfaces[:place], row, *self.surfaces[place + 1 :]))
         return with_values(self, {"surfaces": rows})
 
     def with_part(self, name: str, /, **changes: Unpack[PartChanges]) -> Scene:
@@ -357,7 +357,7 @@ class Scene(Row):
     def without_named_view(self, name: str) -> Scene:
         """The scene without a named view. Raises UsageError if the named view does not exist."""
         place = place_named(self.views, name)
-        return with_values(self, {"views": Table((*self.views[:place], *self.views[place + 1 :]))})
+        return with_values(self, {"views": TableRows((*self.views[:place], *self.views[place + 1 :]))})
 
     def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
         """The scene with some fields of its scalar changed. A new scalar must have a name."""
@@ -452,7 +452,7 @@ class Scene(Row):
     def _with_row(self, table: str, place: int, changes: Mapping[str, Any]) -> Scene:
         rows = vars(self)[table]
         row = rows[place]
-        rows = Table((*rows[:place], replaced(row, changes), *rows[place + 1 :]))
+        rows = TableRows((*rows[:place], replaced(row, changes), *rows[place + 1 :]))
         # Tables refer to each other by name, so references stay valid unless a name or a reference changes.
         # A light must keep the aim that another light follows. Cached properties depend on the parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)

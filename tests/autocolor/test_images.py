@@ -68,6 +68,24 @@ def test_a_saved_image_has_the_legend_as_a_display_shows_it(tmp_path: Path) -> N
     assert studio._repr_png_() == display._repr_png_()
 
 
+def test_the_image_of_a_studio_is_smooth_and_has_the_size_and_the_legend_of_its_display(
+    tmp_path: Path,
+) -> None:
+    studio, path = Studio(scene_of(cube(), scalar={"name": "z"})), tmp_path / "cube.png"
+    studio.scalar(bands=4)
+    studio.save_image(path)
+    picture = render(studio.scene, 480, 640, smooth=2)
+    save_image(tmp_path / "smooth.png", studio.scene, picture)
+    assert path.read_bytes() == (tmp_path / "smooth.png").read_bytes()
+    with pytest.raises(OutputError):
+        studio.save_image(path)
+    studio.save_image(path, smooth=1, overwrite=True)
+    assert isinstance(studio.display, Ramtek9300)
+    assert (np.asarray(Image.open(path)) == studio.display.field()).all()
+    with pytest.raises(UsageError, match="smooth must be"):
+        studio.save_image(path, smooth=0, overwrite=True)
+
+
 @pytest.mark.parametrize("level", range(10))
 def test_an_image_has_the_same_pixels_at_every_level_of_compression(tmp_path: Path, level: int) -> None:
     path = tmp_path / "wall.png"

@@ -31,7 +31,7 @@ from autocolor.scene.row_kinds import (
     Reference,
     References,
     RowList,
-    Table,
+    TableRows,
     nested,
     references_of,
     table_row,
@@ -93,8 +93,8 @@ class Box(Row):
 class Stack(Row):
     """A row with a table."""
 
-    boxes: Table[Box] = column_of(
-        RowList(Box, by_name=True), default=Table(), tier=Tier.FRAME, help="The boxes."
+    boxes: TableRows[Box] = column_of(
+        RowList(Box, by_name=True), default=TableRows(), tier=Tier.FRAME, help="The boxes."
     )
 
 

@@ -325,7 +325,8 @@ def test_a_row_is_found_by_number_or_by_name_after_every_edit() -> None:
     assert hash(lights) == hash(tuple(lights))
     assert type(lights[:1]) is tuple
     assert lights[0] is lights["key"] is scene.light("key")
-    assert "keys" not in lights
+    unknown: object = "keys"
+    assert unknown not in lights
 
 
 test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = refused(
