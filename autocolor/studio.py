@@ -25,7 +25,6 @@ The legend of a scalar is sent after the words, and again whenever it changes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from os import fspath
 from os.path import abspath
 from pathlib import Path
@@ -37,11 +36,11 @@ from autocolor.budget import allowing, validated_limit
 from autocolor.errors import AutocolorError, UsageError
 from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
-from autocolor.images import SMOOTHNESS, display_image, save_image
+from autocolor.images import display_image, save_image
 from autocolor.journal.history import History, is_picture
 from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
-from autocolor.lighting.picture import Picture, check_smooth
+from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
 from autocolor.mapping.intensity import held_exposure, stage_surfaces
 from autocolor.mapping.ranges import LevelRange
@@ -449,11 +448,9 @@ class Studio:
         Each pixel is the mean of `smooth` x `smooth` pixels, by default of 2 x 2. With 1, it is the image on
         the display. Raises the errors of `autocolor.save_image`.
         """
-        smooth = SMOOTHNESS if smooth is None else smooth
-        check_smooth(smooth)
-        lines, elements = (smooth * size for size in self._size)
-        picture = self._rendered(self.scene, lines, elements, self._rendering).picture
-        save_image(path, self.scene, replace(picture, smooth=smooth), overwrite=overwrite)
+        lines, elements = self._size
+        with allowing(self._limit):
+            save_image(path, self.scene, size=(elements, lines), smooth=smooth, overwrite=overwrite)
 
     def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
         """Mark the current scene as saved to files, by their paths and stamps (see `files.stamps`).

@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.batches.frames import frames_of_tracks
-from autocolor.batches.making import Batch, Source, batch_results, checked_batch
+from autocolor.batches.making import Batch, Source, batch_results, checked_batch, scene_and_picture
 from autocolor.batches.runs import Start, tier_of
 from autocolor.batches.table import Result, Rows, Variant, variants_of
 from autocolor.checks import brief, shown
@@ -79,10 +79,10 @@ def animate(
 
     A frame costs its edit from the frame before. Memory is bounded, because frames are written as they are
     made; only a stream is in memory until its end. With `loop`, a film begins again at its end. `size` and
-    `smooth` are as in `render`.
+    `smooth` are as in `batch`.
 
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
-    has the words of the first frame and then a load of the lookup table for each frame.
+    has the words of the first frame and then a load of the lookup table for each frame; it is never smooth.
 
     Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
     cannot be made, or if a frame of a .ramtek file changes more than entries. A film or a stream is then not
@@ -98,9 +98,9 @@ def animate(
         raise UsageError("an animation must have at least one frame, not none; make some with `frames`")
     check_rate(fps, kind)
     if frames is not None:
-        start = checked_batch(source, [{}], None)
-        source = start.scene if start.picture is None else (start.scene, start.picture)
-        rows = frames_of_tracks(start.scene, [rows], frames, loop=None if loop else False)
+        scene, picture = scene_and_picture(source)
+        source = scene if picture is None else (scene, picture)
+        rows = frames_of_tracks(scene, [rows], frames, loop=None if loop else False)
     tell = progress or (lambda result: None)
     if kind == STREAM:
         return _stream(source, rows, name, size, smooth, overwrite, tell)
@@ -185,6 +185,10 @@ def _stream(
 ) -> Film:
     """Write the stream of an animation. Raises InputError if a frame changes more than entries."""
     refuse_output(path, overwrite=overwrite)
+    scene, picture = scene_and_picture(source)
+    if picture is None and smooth is None:
+        smooth = 1
+    source = scene if picture is None else (scene, picture)
     batch = checked_batch(source, variants, None, size=size, smooth=smooth, ordered=True)
     if batch.drawing.smooth > 1:
         raise UsageError(
