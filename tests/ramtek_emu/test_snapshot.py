@@ -129,7 +129,7 @@ def test_a_snapshot_is_a_picture_that_others_read(tmp_path: Path) -> None:
         assert picture.info == picture_of(path.read_bytes())[1]
     same(display, read_snapshot(path))
     with pytest.raises(OutputExistsError):
-        write_snapshot(display, path, overwrite=False)
+        write_snapshot(display, path)
     for other in (tmp_path / "none.png", tmp_path, "a\0b"):
         with pytest.raises(MissingInputError):
             read_snapshot(other)
