@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from autocolor.commands.demo import demo as demo
     from autocolor.commands.window import view as view
     from autocolor.errors import AutocolorError as AutocolorError
+    from autocolor.errors import EditWarning as EditWarning
     from autocolor.errors import InputError as InputError
     from autocolor.errors import MissingInputError as MissingInputError
     from autocolor.errors import OutputError as OutputError
@@ -78,6 +79,7 @@ _HOME: Final = {
     "AutocolorError": "errors",
     "BlinnPhong": "scene.reflection_models",
     "CookTorrance": "scene.reflection_models",
+    "EditWarning": "errors",
     "Flap": "scene.lights",
     "Flaps": "scene.lights",
     "HalfSpace": "scene.lights",
@@ -144,7 +146,9 @@ _NOT_INSTALLED: Final = "0+unknown"
 def __getattr__(name: str) -> object:
     """A public name, from the module that defines it, or the version; found when it is first asked for."""
     if name not in _HOME and name != "__version__":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from autocolor.checks import missing_attribute
+
+        raise missing_attribute(f"module {__name__!r}", name, __all__)
     from importlib import import_module
 
     value = _version() if name == "__version__" else getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

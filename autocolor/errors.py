@@ -1,4 +1,4 @@
-"""The exceptions of autocolor, with the exit codes of commands.
+"""The exceptions of autocolor, with the exit codes of commands, and a warning.
 
 A message names the thing, the rule that it breaks, its value, its place, and what to do.
 """
@@ -58,6 +58,10 @@ class WriteError(AutocolorError):
     """A write that failed; the previous content of the file is intact."""
 
     exit_code = 74
+
+
+class EditWarning(UserWarning):
+    """An edit that no picture shows: of a surface without polygons, or to values that are there already."""
 
 
 def reason_of(cause: Exception) -> str:

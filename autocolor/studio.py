@@ -30,10 +30,12 @@ from os.path import abspath
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, NoReturn, Unpack
+from warnings import warn
 
 from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
-from autocolor.errors import AutocolorError, UsageError
+from autocolor.checks import Suggesting
+from autocolor.errors import AutocolorError, EditWarning, UsageError
 from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image, save_image
@@ -47,8 +49,9 @@ from autocolor.mapping.ranges import LevelRange
 from autocolor.rendering import Rendering, block_for, blocks_of, rendering, sees_the_same
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns import Tier
-from autocolor.scene.scene import LEVELS, NORMALS, Scene, cost_of_edit
+from autocolor.scene.scene import LEVELS, NORMALS, Scene, cost_of_edit, unseen_recoloring
 from autocolor.sending import send_image, shown_colors
+from autocolor.threads import alone, for_one_thread
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from autocolor.web.notebook import WidgetPort
 from ramtek_emu import HostPort, Ramtek9300
@@ -64,12 +67,14 @@ if TYPE_CHECKING:
     from autocolor.scene.creation import SurfaceSource
 
 
-class Studio:
+@for_one_thread
+class Studio(Suggesting):
     """A scene shown on a display, which can be edited step by step, with undo and redo.
 
     `display` is a host port: a `Ramtek9300`, which is also made if none is given, a `TcpPort` to one, or a
     `Recorder`. It is reset and sent the whole picture; each edit then sends only what changed. An edit that
-    raises an error changes nothing.
+    raises an error changes nothing. While a thread is in a method of the studio, any method raises UsageError
+    in another thread.
     """
 
     def __init__(
@@ -190,18 +195,22 @@ class Studio:
         """
         self.edit(highlight_placed(self.scene, self.seen_at(line, element), light))
 
-    def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:
+    def recolor(self, surface: str, /, *colors: NoReturn, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; this sends entries, but no words.
 
         `changes` are fields of its Paint: object_color and light_color ("#rrggbb", a name, or three whole
         numbers), blend, light_percentage; or a ramp. A ramp replaces the two colors and their blend, and any
-        of these replaces a ramp; the others then have their defaults.
+        of these replaces a ramp; the others then have their defaults. An EditWarning says if the surface has
+        these colors already, or no polygons.
 
             studio.recolor("body", ramp=["#200", "#f60", "#fff"])
         """
-        scene = self.scene.with_paint(surface, **changes)
+        scene = self.scene.with_paint(surface, *colors, **changes)
+        if sentence := unseen_recoloring(self.scene, scene, surface):
+            # A function of `for_one_thread` is between this method and its caller.
+            warn(sentence, EditWarning, stacklevel=3)
         if scene is not self.scene:
-            self._take(scene, Tier.ENTRIES)
+            self._show_scene(scene, lambda: self._history.take(scene), Tier.ENTRIES)
 
     def surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
         """Change fields of a surface, including those of its reflectance and its paint."""
@@ -293,7 +302,7 @@ class Studio:
         """
         costs = cost_of_edit(self.scene, scene)
         if costs is not None:
-            self._take(scene, costs, same_step, moving)
+            self._show_scene(scene, lambda: self._history.take(scene, same_step), costs, moving)
 
     @property
     def is_coarse(self) -> bool:
@@ -448,9 +457,8 @@ class Studio:
         Each pixel is the mean of `smooth` x `smooth` pixels, by default of 2 x 2. With 1, it is the image on
         the display. Raises the errors of `autocolor.save_image`.
         """
-        lines, elements = self._size
         with allowing(self._limit):
-            save_image(path, self.scene, size=(elements, lines), smooth=smooth, overwrite=overwrite)
+            save_image(path, self.scene, size=self._size[::-1], smooth=smooth, overwrite=overwrite)
 
     def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
         """Mark the current scene as saved to files, by their paths and stamps (see `files.stamps`).
@@ -531,12 +539,6 @@ class Studio:
         """
         return self._port.new_widget()
 
-    def _take(self, scene: Scene, costs: Tier, same_step: bool = False, moving: bool = False) -> None:
-        """Show a scene, which an edit of this cost made, and add the step to the history."""
-        self._show(scene, costs, moving)
-        self._history.take(scene, same_step)
-        self._port.refresh()
-
     def _step(self, scenes: Sequence[Scene], move: Callable[[], None], steps: int) -> bool:
         """Show the scene that is some steps from the end, and move there in the history by these steps.
 
@@ -552,9 +554,11 @@ class Studio:
         self._show_scene(scenes[-steps], note)
         return True
 
-    def _show_scene(self, scene: Scene, note: Callable[[], object]) -> None:
+    def _show_scene(
+        self, scene: Scene, note: Callable[[], object], costs: Tier | None = None, moving: bool = False
+    ) -> None:
         """Show a scene, then note the step in the history, and refresh the widgets."""
-        self._show(scene, cost_of_edit(self.scene, scene) or Tier.NOTHING)
+        self._show(scene, costs or cost_of_edit(self.scene, scene) or Tier.NOTHING, moving)
         note()
         self._port.refresh()
 
@@ -585,6 +589,7 @@ class Studio:
         with allowing(self._limit):
             return rendering(scene, lines, elements, before)
 
+    @alone
     def _render_lights(self) -> None:
         """Render the edits of lights since words stand for normals; nothing is sent."""
         shown = self._shown

@@ -17,7 +17,8 @@ ROOT = Path(__file__).resolve().parents[1]
 
 PUBLIC_NAMES = {
     "autocolor": [
-        "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
+        "AutocolorError", "BlinnPhong", "CookTorrance", "EditWarning", "Flap", "Flaps", "HalfSpace",
+        "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
         "UnavailableError", "UsageError", "Variant", "VariantWarning", "View", "WriteError", "animate",
@@ -37,7 +38,8 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
+        "errors", "logs", "arrays", "checks", "immutable", "budget", "threads", "scene", "visibility",
+        "scalars",
         "lighting", "mapping", "files", "rendering", "sending", "images", "layers", "batches", "explanation",
         "journal", "web", "studio", "testing", "widgets", "screens", "commands", "__main__",
     ),

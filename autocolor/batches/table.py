@@ -102,8 +102,8 @@ def variants_of(rows: Rows) -> tuple[Variant, ...]:
     """
     if isinstance(rows, (str, bytes, Mapping, Variant)) or not isinstance(rows, Iterable):
         raise UsageError(
-            f"variants must be a list of tables or of Variants, not {shown(rows)}; write them as in"
-            " [{'ambient': 0.1}, {'ambient': 0.2}]"
+            f"variants must be a list of tables or of Variants, not {shown(rows)}; write them after the"
+            " scene, as in [{'ambient': 0.1}, {'ambient': 0.2}]"
         )
     return _named(enumerate(rows, 1))
 
@@ -144,7 +144,9 @@ def _variant(row: object) -> Variant:
     if isinstance(row, Variant):
         return row
     if not isinstance(row, Mapping):
-        raise UsageError(f"a variant must be a table of values by key, not {shown(row)}")
+        raise UsageError(
+            f"a variant must be a table of values by key, not {shown(row)}; write it as in {{'ambient': 0.2}}"
+        )
     settings = {key: value for key, value in row.items() if key not in (NAME, TIME)}
     name = row.get(NAME)
     return Variant(UNNAMED if name is None else name, settings, row.get(TIME))

@@ -68,6 +68,8 @@ class Palette(Sequence[Color]):
     names: tuple[str, ...]
 
     def __init__(self, colors: Any, names: Iterable[str] = ()) -> None:
+        if not isinstance(colors, Iterable):
+            raise InputError(f"the colors of a palette must be a sequence, not {shown(colors)}; give a list")
         colors = colors.tolist() if isinstance(colors, np.ndarray) else list(colors)
         names = tuple(names) or ("",) * len(colors)
         if not 1 <= len(colors) <= MOST_COLORS:

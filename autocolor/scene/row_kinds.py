@@ -16,6 +16,7 @@ from typing import (
     TYPE_CHECKING,
     Any,
     Final,
+    NoReturn,
     Self,
     SupportsIndex,
     TypeVar,
@@ -422,6 +423,13 @@ def without_name(keys: Mapping[str, object]) -> dict[str, object]:
     return {key: value for key, value in keys.items() if key != "name"}
 
 
+def _refuse_assignment(row: Row, name: str, value: object) -> NoReturn:
+    thing = type(row).__name__
+    raise dataclasses.FrozenInstanceError(
+        f"a {thing} cannot be changed; use replace({name}=...), which returns another {thing}"
+    )
+
+
 @dataclass_transform(
     frozen_default=True,
     field_specifiers=(column_of, number, boolean, text, coordinates, vector, one_of, color, nested),
@@ -432,5 +440,7 @@ def table_row(cls: type[SomeRow]) -> type[SomeRow]:
     The fields are made by `column_of`, or by a function for one kind, such as `number`.
     """
     made = dataclasses.dataclass(frozen=True, repr=False)(cls)
+    if hasattr(made, "replace"):
+        made.__setattr__ = _refuse_assignment  # type: ignore[method-assign,assignment]
     made.__init__.__annotations__ = {**get_type_hints(made.__init__), "return": None}
     return made

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
-from typing import Any, Final, TypeVar, Unpack
+from typing import Any, Final, NoReturn, TypeVar, Unpack
 
 from autocolor.arrays import Floats
 from autocolor.checks import Color, Vector, nearest, shown
@@ -310,8 +310,13 @@ class Scene(Row):
         """The scene with some fields of a surface changed, also fields of its reflectance and its paint."""
         return self._with_row("surfaces", place_named(self.surfaces, name), changes)
 
-    def with_paint(self, name: str, /, **changes: Unpack[PaintChanges]) -> Scene:
+    def with_paint(self, name: str, /, *colors: NoReturn, **changes: Unpack[PaintChanges]) -> Scene:
         """The scene with some fields of a surface's paint changed; the same scene if all values are equal."""
+        if colors:
+            raise UsageError(
+                f"a recoloring must name its fields, not give {shown(colors[0])} alone; write it as in"
+                f" recolor({name!r}, object_color={shown(colors[0])})"
+            )
         place = place_named(self.surfaces, name)
         surface = self.surfaces[place]
         try:
@@ -524,6 +529,16 @@ def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
     """Whether an edit from one scene to another costs at least a tier."""
     edit_cost = cost(old, new)
     return edit_cost is not None and edit_cost >= tier
+
+
+def unseen_recoloring(old: Scene, new: Scene, surface: str) -> str:
+    """Why no picture shows the recoloring of a surface; empty if one can show it."""
+    number = 1 + [row.name for row in new.surfaces].index(surface)
+    if old.surface(surface).paint == new.surface(surface).paint:
+        return f"surface {shown(surface)} has these colors already; the recoloring changes nothing"
+    if all(new.surface_number_of_part[part] != number for part in new.mesh.parts_in_use):
+        return f"surface {shown(surface)} has no polygons; no picture shows its colors"
+    return ""
 
 
 def unset_paints(old: Scene, new: Scene) -> list[str]:

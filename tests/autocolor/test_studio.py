@@ -5,8 +5,11 @@ from __future__ import annotations
 import copy
 import itertools
 import pickle
+import re
+import warnings
 from collections.abc import Callable
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -16,10 +19,12 @@ from hypothesis import strategies as st
 
 import autocolor
 from autocolor import (
+    EditWarning,
     InputError,
     OutputError,
     Scene,
     Studio,
+    Surface,
     UsageError,
     image,
     read_picture,
@@ -168,6 +173,57 @@ def test_recoloring_sends_the_entries_of_one_surface_and_no_word(edits: list[Rec
         number = studio.picture.surfaces.index(edit.surface) + 1
         assert (studio.picture.surface_number[changed] == number).all()
     assert held(display) == fresh(studio.scene)
+
+
+SEEN = "surface 'body' has these colors already; the recoloring changes nothing"
+UNSEEN = "surface 'spare' has no polygons; no picture shows its colors"
+
+
+@pytest.mark.parametrize(
+    ("surface", "color", "sentence"), [("body", "#b0b0b0", SEEN), ("spare", "red", UNSEEN)]
+)
+def test_a_recoloring_that_no_picture_shows_says_so(surface: str, color: str, sentence: str) -> None:
+    scene = car()
+    studio, _ = opened(scene.replace(surfaces=[*scene.surfaces, Surface("spare")]))
+    with pytest.warns(EditWarning, match=f"^{re.escape(sentence)}$") as caught:
+        studio.recolor(surface, object_color=color)
+    # The warning is at the line of the caller.
+    assert [each.filename for each in caught] == [__file__]
+    assert len(studio.history.to_undo) == (surface == "spare")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        studio.recolor("body", object_color="navy")
+
+
+def test_a_studio_is_used_by_one_thread_at_a_time() -> None:
+    studio, display = opened()
+    problems: list[str] = []
+
+    def use(edit: Callable[[], object]) -> None:
+        try:
+            edit()
+        except UsageError as problem:
+            problems.append(str(problem))
+
+    def at_once(_: object) -> None:
+        """Use the studio while its display receives words, from this thread and from another."""
+        assert studio.seen_at(12, 16) is not None
+        for edit in (lambda: studio.recolor("body", blend=0.3), studio.undo, lambda: studio.scene):
+            thread = Thread(target=use, args=(edit,))
+            thread.start()
+            thread.join()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(display, "send", at_once)
+        studio.recolor("body", blend=0.1)
+    assert problems == 2 * [
+        "a studio must be used by one thread at a time, not by two at once; make a Studio for each thread, or"
+        " wait until the other thread is ready"
+    ]
+    thread = Thread(target=studio.recolor, args=("body",), kwargs={"blend": 0.2})
+    thread.start()
+    thread.join()
+    assert studio.scene.surface("body").paint.blend == 0.2
 
 
 @given(st.sampled_from(["stress", "z"]), st.lists(scale_edits, min_size=1, max_size=4))
@@ -493,6 +549,7 @@ test_what_is_refused = refused(
     [
         (lambda studio: studio.recolor("body", object_color="rde"), InputError),
         (lambda studio: studio.recolor("body", diffuse=1), InputError),
+        (lambda studio: studio.recolor("body", "red"), UsageError),
         (lambda studio: studio.recolor("boddy", blend=0.5), UsageError),
         (lambda studio: studio.light("key", intensity=1e39), InputError),
         (lambda studio: studio.light("kee", intensity=1), UsageError),

@@ -190,7 +190,7 @@ REFUSED_FILES = [
         "t.csv, row 100002: a table must have at most 100,000 var",
     ),
     ("t.json", "{}", "t.json: a table in JSON must be a list of objects, not {}"),
-    ("t.json", "[1]", "t.json, row 1: a variant must be a table of values by key, not 1"),
+    ("t.json", "[1]", "t.json, row 1: a variant must be a table of values by key, not 1; write it as in"),
     ("t.json", '[{"name": 3}]', "t.json, row 1: a variant must have a name of at least one character, not 3"),
     ("t.json", '[{"time": true}]', f"t.json, row 1: {TIME} true"),
     ("t.json", f'[{{"time": {"9" * 400}}}]', f"t.json, row 1: {TIME} 999"),
@@ -216,7 +216,7 @@ def test_a_bad_table_is_refused_with_its_place(
 
 
 LIST = "variants must be a list of tables or of Variants, not"
-WRITTEN = "write them as in [{'ambient': 0.1}, {'ambient': 0.2}]"
+WRITTEN = "write them after the scene, as in [{'ambient': 0.1}, {'ambient': 0.2}]"
 GRID = "a grid must have 1 to 100,000 variants, not"
 VARY = "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not"
 ENDS = (

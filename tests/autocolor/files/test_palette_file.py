@@ -121,6 +121,7 @@ test_what_cannot_be_written_is_refused = refused(
     lambda given: write_palette(*given[:2], names=given[2] if given[2:] else None),
     [
         (("a.gpl", np.zeros(3, np.uint8)), f"color 1 of a palette: a color {A_COLOR} 0; correct it"),
+        (("a.gpl", 3), "the colors of a palette must be a sequence, not 3; give a list"),
         (("a.gpl", ["red", "rde"]), f"color 2 of a palette: a color {A_COLOR} 'rde'; did you mean 'red'?"),
         (
             ("a.gpl", ["red"], ["a", "b"]),

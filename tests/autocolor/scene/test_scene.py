@@ -122,6 +122,15 @@ def test_every_part_has_the_first_surface_that_there_is(
         assert surface.levels == (77 if surface.name == of_red else None)
 
 
+def test_the_only_surface_is_that_of_all_parts_if_no_part_has_it() -> None:
+    ball = [Surface("ball", levels=99)]
+    scene = scene_of(car(), surfaces=ball, material_of_part={"hood": "red"})
+    assert (surfaces_of_parts(scene), scene.surfaces[:1]) == (["ball", "red", "ball"], tuple(ball))
+    for parts in ({"door": "ball"}, {}):
+        two = [*ball, Surface("box")] if not parts else ball
+        assert surfaces_of_parts(scene_of(car(), surfaces=two, surface_of_part=parts))[1:] == ["surface"] * 2
+
+
 def test_more_materials_than_surface_numbers_share_the_last_surface() -> None:
     mesh = many_parts(300)
     materials = {name: f"of {name}" for name in mesh.part_names}
@@ -341,6 +350,11 @@ test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = ref
         (lambda scene: scene.without_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.with_copied_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.with_paint("dor", blend=1), "there is no surface 'dor'; did you mean 'door'?"),
+        (
+            lambda scene: scene.with_paint("door", "red"),
+            "a recoloring must name its fields, not give 'red' alone; write it as in recolor('door',"
+            " object_color='red')",
+        ),
         (
             lambda scene: scene.with_saved_view("hood").with_taken_view("hod"),
             "there is no named view 'hod'; did you mean 'hood'?",
