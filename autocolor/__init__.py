@@ -6,7 +6,7 @@ Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
     display = Ramtek9300()
     studio = autocolor.Studio(scene, display)
     studio.recolor("body", object_color="#1f3f8f", blend=0.3)
-    display.save_png("coupe.png", overwrite=True)
+    display.save_png("coupe.png")
 """
 
 from __future__ import annotations
