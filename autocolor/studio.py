@@ -30,12 +30,11 @@ from os.path import abspath
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, NoReturn, Unpack
-from warnings import warn
 
 from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
 from autocolor.checks import Suggesting
-from autocolor.errors import AutocolorError, EditWarning, UsageError
+from autocolor.errors import AutocolorError, UsageError, warn_of_edit
 from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image, save_image
@@ -206,9 +205,7 @@ class Studio(Suggesting):
             studio.recolor("body", ramp=["#200", "#f60", "#fff"])
         """
         scene = self.scene.with_paint(surface, *colors, **changes)
-        if sentence := unseen_recoloring(self.scene, scene, surface):
-            # A function of `for_one_thread` is between this method and its caller.
-            warn(sentence, EditWarning, stacklevel=3)
+        warn_of_edit(unseen_recoloring(self.scene, scene, surface))
         if scene is not self.scene:
             self._show_scene(scene, lambda: self._history.take(scene), Tier.ENTRIES)
 

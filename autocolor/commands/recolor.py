@@ -179,7 +179,7 @@ def recolored(
             " bands of a scalar; use it with `autocolor render`"
         )
     with as_usage():
-        painted = edited if surface is None else edited.with_surface(surface, **colors)
+        painted = edited if surface is None else edited.with_paint(surface, **colors)
     tell_unset(edited, painted)
     if surface is not None and (sentence := unseen_recoloring(edited, painted, surface)):
         tell(f"autocolor: {sentence}")

@@ -431,9 +431,11 @@ class Scene(Row):
     def with_rig(self, rig: Rig) -> Scene:
         """The scene with the lights of a rig instead of its own, fitted to the size of its object.
 
-        Links to unknown surfaces and parts are left out (see `Links.within`). Raises InputError if the lights
-        cannot be fitted (see `Rig.fitted`).
+        Links to unknown surfaces and parts are left out (see `Links.within`). Raises UsageError for any other
+        value, InputError if the lights cannot be fitted (see `Rig.fitted`).
         """
+        if not isinstance(rig, Rig):
+            raise UsageError(f"a rig must be a Rig, not {shown(rig)}; read one from a file with `read_rig`")
         surfaces, parts = ({row.name for row in rows} for rows in (self.surfaces, self.parts))
         lights = [
             light.replace(links=light.links.within(surfaces, parts))
@@ -532,11 +534,10 @@ def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
 
 
 def unseen_recoloring(old: Scene, new: Scene, surface: str) -> str:
-    """Why no picture shows the recoloring of a surface; empty if one can show it."""
-    number = 1 + [row.name for row in new.surfaces].index(surface)
-    if old.surface(surface).paint == new.surface(surface).paint:
+    """Why no picture shows the recoloring of a surface by `with_paint`; empty if one can show it."""
+    if new is old:
         return f"surface {shown(surface)} has these colors already; the recoloring changes nothing"
-    if all(new.surface_number_of_part[part] != number for part in new.mesh.parts_in_use):
+    if all(new.parts[part].surface != surface for part in new.mesh.parts_in_use):
         return f"surface {shown(surface)} has no polygons; no picture shows its colors"
     return ""
 

@@ -356,6 +356,10 @@ test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = ref
             " object_color='red')",
         ),
         (
+            lambda scene: scene.with_rig("rig.toml"),
+            "a rig must be a Rig, not 'rig.toml'; read one from a file with `read_rig`",
+        ),
+        (
             lambda scene: scene.with_saved_view("hood").with_taken_view("hod"),
             "there is no named view 'hod'; did you mean 'hood'?",
         ),
