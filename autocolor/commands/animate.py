@@ -151,7 +151,7 @@ def animate(
             start,
             frames,
             output,
-            frames_per_second=fps,
+            fps=fps,
             loop=not once,
             size=size if is_sized or not is_picture else None,
             smooth=smooth,
