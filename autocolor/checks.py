@@ -180,7 +180,7 @@ class Suggesting:
     elsewhere: ClassVar[Mapping[str, str]] = MappingProxyType({})
     """The ends of messages about names that mean something elsewhere."""
 
-    def meant(self) -> Iterable[str]:
+    def _meant(self) -> Iterable[str]:
         """The names that may be meant."""
         return (name for name in dir(self) if not name.startswith("_"))
 
@@ -191,4 +191,4 @@ class Suggesting:
             if name.startswith("_") or hasattr(type(self), name):
                 return object.__getattribute__(self, name)
             owner = f"{type(self).__name__!r} object"
-            raise missing_attribute(owner, name, self.meant(), type(self).elsewhere)
+            raise missing_attribute(owner, name, self._meant(), type(self).elsewhere)
