@@ -2,11 +2,9 @@
 
 Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
 
-    scene = autocolor.read_scene("scenes/coupe")
-    display = Ramtek9300()
-    studio = autocolor.Studio(scene, display)
+    studio = autocolor.Studio(autocolor.read_scene("scenes/coupe"))
     studio.recolor("body", object_color="#1f3f8f", blend=0.3)
-    display.save_png("coupe.png")
+    studio.save_image("coupe.png")
 """
 
 from __future__ import annotations
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
     from autocolor.batches.table import grid as grid
     from autocolor.batches.table import read_variants as read_variants
     from autocolor.commands.demo import demo as demo
+    from autocolor.commands.window import view as view
     from autocolor.errors import AutocolorError as AutocolorError
     from autocolor.errors import EditWarning as EditWarning
     from autocolor.errors import InputError as InputError
@@ -130,6 +129,7 @@ _HOME: Final = {
     "save_words": "images",
     "scene_of": "scene.creation",
     "send_picture": "images",
+    "view": "commands.window",
     "write_palette": "files.palette_file",
     "write_picture": "files.picture_file",
     "write_rig": "files.rig_file",

@@ -166,7 +166,7 @@ class Kind(Generic[Value]):
         if isinstance(one, Row):
             return one.between(other, share)
         if isinstance(one, tuple) and _names_in(one) == _names_in(other):
-            return tuple(self.between(a, b, share) for a, b in zip(one, other, strict=True))
+            return type(one)(self.between(a, b, share) for a, b in zip(one, other, strict=True))
         if type(one) is type(other) is int:
             return half_up(one + (other - one) * share)
         if not (isinstance(one, float) and isinstance(other, float)) or one == other:

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, UsageError, Variant, grid, read_variants, write_palette
+from autocolor import InputError, Palette, UsageError, Variant, grid, read_variants, write_palette
 from autocolor.batches.table import (
     LARGEST_TABLE,
     MOST_VARIANTS,
@@ -131,6 +131,15 @@ def written(folder: Path, name: str, data: str | bytes) -> Path:
     path = folder / name
     path.write_bytes(data.encode() if isinstance(data, str) else data)
     return path
+
+
+def test_a_palette_is_an_axis_with_the_names_of_its_colors_and_a_list_in_settings() -> None:
+    palette = Palette(["red", "lime", "navy"], ["Deep/Sea", "", "deep/sea"])
+    variants = grid({"a": palette, "b": [1]})
+    assert [variant.name for variant in variants] == ["Deep/Sea", "00ff00", "deep/sea-2"]
+    colors = ["#ff0000", "#00ff00", "#000080"]
+    assert settings_of(variants) == [{"a": color, "b": 1} for color in colors]
+    assert Variant("ramp", {"a": palette}).settings == {"a": colors}
 
 
 def test_a_csv_table_has_texts_and_an_empty_cell_sets_nothing(tmp_path: Path) -> None:

@@ -32,6 +32,7 @@ from autocolor.scene.row_kinds import (
     Reference,
     References,
     RowList,
+    TableRows,
     nested,
     references_of,
     table_row,
@@ -93,8 +94,8 @@ class Box(Row):
 class Stack(Row):
     """A row with a table."""
 
-    boxes: tuple[Box, ...] = column_of(
-        RowList(Box, by_name=True), default=(), tier=Tier.FRAME, help="The boxes."
+    boxes: TableRows[Box] = column_of(
+        RowList(Box, by_name=True), default=TableRows(), tier=Tier.FRAME, help="The boxes."
     )
 
 

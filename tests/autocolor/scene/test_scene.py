@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import pickle
 from collections.abc import Sequence
 from typing import Any
 
@@ -310,10 +311,39 @@ KEY = Light("key", (0, -1, 0))
 LIGHT_TABLE = f"lights[1] must be a table of {listed(keys_of(Light))}, not 'key'"
 NO_SELF = f"view: there is no field 'self'; choose {either(keys_of(View))}"
 
+
+def test_a_row_is_found_by_number_or_by_name_after_every_edit() -> None:
+    scene = car_scene().with_saved_view("hood").with_saved_view("wheel")
+    edited = [
+        scene,
+        scene.with_light("key", intensity=2),
+        scene.with_light_in_world("key", follows="eye"),
+        scene.with_paint("door", blend=1),
+        scene.with_surface("door", diffuse=0.5),
+        scene.with_part("hood", stage=True),
+        scene.without_named_view("wheel"),
+        scene.between(scene.with_light("key", intensity=2), 0.5),
+        pickle.loads(pickle.dumps(scene)),
+    ]
+    for each in edited:
+        for rows in (each.lights, each.surfaces, each.parts, each.views, each.lights_in_world):
+            assert [rows[row.name] for row in rows] == [*rows]
+            assert [row.name in rows for row in rows] == [row in rows for row in rows] == [True] * len(rows)
+    lights = scene.lights
+    assert lights == tuple(lights)
+    assert hash(lights) == hash(tuple(lights))
+    assert type(lights[:1]) is tuple
+    assert lights[0] is lights["key"] is scene.light("key")
+    unknown: object = "keys"
+    assert unknown not in lights
+
+
 test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = refused(
     lambda ask: ask(car_scene()),
     [
         (lambda scene: scene.light("keys"), "there is no light 'keys'; did you mean 'key'?"),
+        (lambda scene: scene.lights["keys"], "there is no light 'keys'; did you mean 'key'?"),
+        (lambda scene: scene.replace(lights=()).lights["key"], "there is no row 'key'"),
         (lambda scene: scene.surface("dor"), "there is no surface 'dor'; did you mean 'door'?"),
         (lambda scene: scene.part("x"), "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
