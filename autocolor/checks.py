@@ -114,7 +114,7 @@ FUNCTIONS: Final = {
     "save": ("save_image", "write_scene", "write_picture"),
     "save_image": ("save_image",),
     "save_png": ("save_image",),
-    "show": ("image",),
+    "show": ("view",),
     "write": ("write_scene", "write_picture"),
 }
 """The functions of autocolor for words of other programs, and for methods that their values do not have."""
