@@ -114,7 +114,7 @@ FUNCTIONS: Final = {
     "save": ("save_image", "write_scene", "write_picture"),
     "save_image": ("save_image",),
     "save_png": ("save_image",),
-    "show": ("image",),
+    "show": ("view",),
     "write": ("write_scene", "write_picture"),
 }
 """The functions of autocolor for words of other programs, and for methods that their values do not have."""
@@ -180,7 +180,7 @@ class Suggesting:
     elsewhere: ClassVar[Mapping[str, str]] = MappingProxyType({})
     """The ends of messages about names that mean something elsewhere."""
 
-    def meant(self) -> Iterable[str]:
+    def _meant(self) -> Iterable[str]:
         """The names that may be meant."""
         return (name for name in dir(self) if not name.startswith("_"))
 
@@ -191,4 +191,4 @@ class Suggesting:
             if name.startswith("_") or hasattr(type(self), name):
                 return object.__getattribute__(self, name)
             owner = f"{type(self).__name__!r} object"
-            raise missing_attribute(owner, name, self.meant(), type(self).elsewhere)
+            raise missing_attribute(owner, name, self._meant(), type(self).elsewhere)

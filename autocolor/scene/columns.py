@@ -198,10 +198,10 @@ class Row(Immutable):
     def __post_init__(self) -> None:
         check(self, fields_of(type(self)), [])
 
-    def meant(self) -> Iterable[str]:
+    def _meant(self) -> Iterable[str]:
         """The names that may be meant: attributes, and fields of rows inside, such as "paint.blend"."""
         inside = ((key, row.field) for key, row in keys_of(type(self)).items() if row.field != key)
-        return [*super().meant(), *(f"{field}.{key}" for key, field in inside)]
+        return [*super()._meant(), *(f"{field}.{key}" for key, field in inside)]
 
     def rules(self) -> Iterator[Problem]:
         """The problems of rules between columns. A column with an invalid value is REFUSED."""
