@@ -211,18 +211,26 @@ def places_of_corners(coordinate_rows: Floats, node_rows: Indices) -> Indices:
 
     `coordinate_rows` is (3, nodes); `node_rows`, (4, polygons), holds the node numbers of the polygons.
     """
-    if not _some_share_a_place(coordinate_rows):
+    places = places_of_nodes(coordinate_rows)
+    if places is None:
         return node_rows
+    of_corners: Indices = np.empty(node_rows.shape, np.intp)
+    for chunk in chunks(node_rows.shape[1], CORNERS_AT_ONCE):
+        of_corners[:, chunk] = places.take(node_rows[:, chunk])
+    return of_corners
+
+
+def places_of_nodes(coordinate_rows: Floats) -> Indices | None:
+    """A number for each node, equal for nodes at the same place; None if all their places differ."""
+    if not _some_share_a_place(coordinate_rows):
+        return None
     order = np.lexsort(coordinate_rows)
     moved = np.zeros(len(order), np.bool_)
     for row in coordinate_rows:
         moved[1:] |= np.diff(row[order]) != 0
     places = np.empty(len(order), np.intp)
     places[order] = np.cumsum(moved)
-    of_corners: Indices = np.empty(node_rows.shape, np.intp)
-    for chunk in chunks(node_rows.shape[1], CORNERS_AT_ONCE):
-        of_corners[:, chunk] = places.take(node_rows[:, chunk])
-    return of_corners
+    return places
 
 
 def _some_share_a_place(coordinate_rows: Floats) -> bool:

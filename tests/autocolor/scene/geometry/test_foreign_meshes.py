@@ -168,10 +168,6 @@ test_tables_that_break_a_rule_are_refused_in_a_sentence = refused(
             "nodes must be numbers of shape (nodes, 3), not (2, 2); convert them",
         ),
         (
-            (POINTS, [[0, 1, 6]]),
-            "polygon table: a node number must be a row of the node table (0 to 5), not [0, 1, 6, 6] (row 0)",
-        ),
-        (
             (SimpleNamespace(points=POINTS, faces=np.array([3, 0, 1, 2, 4, 0, 1])),),
             f"{FACES} 2 after 4 (polygon 1); correct them",
         ),
