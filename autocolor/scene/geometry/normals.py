@@ -28,11 +28,6 @@ POLYGONS_AT_ONCE: Final = 1 << 13
 CORNERS_AT_ONCE: Final = 1 << 15
 """The polygons, corners or items of a chunk in the search for fans."""
 
-EDGES_AT_ONCE: Final = 1 << 22
-"""Edges that are sorted at once; more edges are divided by the lower of their places."""
-
-MOST_DIVISIONS: Final = 200
-
 LARGE: Final = 1 << 23
 """The number of corners from which on their numbers take 32 bits instead of 64."""
 
@@ -103,13 +98,10 @@ def node_normals(
     del angles, fans
     if opposite:
         vectors, united = _united_with_opposite(vectors, opposite)
-        for chunk in chunks(numbers.shape[1], POLYGONS_AT_ONCE):
-            numbers[:, chunk] = united[numbers[:, chunk]]
+        numbers = united[numbers]
 
     # Give a fan whose normals cancel out the normal of one of its polygons.
-    sizes = np.empty(vectors.shape[1:], np.float64)
-    for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
-        sizes[chunk] = lengths(vectors[:, chunk])
+    sizes = lengths(vectors)
     canceled = np.flatnonzero(sizes < 1e-9)
     if len(canceled):
         polygon_of_fan = np.zeros(vectors.shape[1], np.intp)
@@ -119,10 +111,8 @@ def node_normals(
         vectors[:, canceled] = normals[:, polygon_of_fan[canceled]]
         vectors[2, canceled[~vectors[:, canceled].any(axis=0)]] = 1.0
         sizes[canceled] = 1.0
-    singles: Singles = np.empty(vectors.shape, np.float32)
-    for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
-        singles[:, chunk] = vectors[:, chunk] / sizes[chunk]
-    return NodeNormals(read_only(singles.T), read_only(numbers.T))
+    vectors /= sizes
+    return NodeNormals(read_only(vectors.astype(np.float32).T), read_only(numbers.T))
 
 
 def _normals_and_angles(coordinate_rows: Floats, node_rows: Indices) -> tuple[Floats, Floats]:
@@ -293,58 +283,24 @@ def _corners_at_shared_edges(places: Indices, part_numbers: Indices) -> Iterator
     Where more than two polygons share an edge, each is paired with the next in the polygon table.
     """
     several_parts = bool((part_numbers != part_numbers[:1]).any())
-    for keys, edges in _edges(places):
-        # Sort the edges so that equal edges of one part become neighbors.
-        if several_parts:
-            polygons = np.repeat(np.arange(places.shape[1]), 4) if edges is None else edges >> 2
-            order = np.lexsort((part_numbers[polygons], keys))
-        else:
-            order = np.argsort(keys, kind="stable")
-        for first in range(int(np.count_nonzero(keys < 0)), len(order), CORNERS_AT_ONCE):
-            rows = order[first : first + CORNERS_AT_ONCE + 1]
-            key, corners = keys[rows], rows if edges is None else edges[rows]
-            shared = key[1:] == key[:-1]
-            if several_parts:
-                part = part_numbers[corners >> 2]
-                shared &= part[1:] == part[:-1]
-            shared = np.flatnonzero(shared)
-            yield corners[shared], corners[shared + 1]
-
-
-def _edges(places: Indices) -> Iterator[tuple[Numbers, Indices | None]]:
-    """The edges in divisions: a key that does not depend on their direction, and their first corners.
-
-    Edges without length have the key -1. The corners of a division ascend, and equal keys are in the same
-    division. The corners of a single division are None: key k belongs to corner k.
-    """
-    place_count = int(places.max(initial=-1)) + 1
-    count = min(-(-places.size // EDGES_AT_ONCE), MOST_DIVISIONS)
-    if count <= 1:
-        all_keys = np.empty((places.shape[1], 4), np.int64)
-        for chunk in chunks(len(all_keys), CORNERS_AT_ONCE):
-            start = places[:, chunk]
-            all_keys[chunk] = edge_keys(start, np.roll(start, -1, axis=0), place_count).T
-        yield all_keys.ravel(), None
-        return
-    # Number the divisions by the lower place of an edge.
-    divisions = np.empty((places.size,), np.uint8)
-    for chunk in chunks(places.shape[1], CORNERS_AT_ONCE):
+    keys = np.empty((places.shape[1], 4), np.int64)
+    count = int(places.max(initial=-1)) + 1
+    for chunk in chunks(len(keys), CORNERS_AT_ONCE):
         start = places[:, chunk]
-        lower = np.minimum(start, np.roll(start, -1, axis=0))
-        divisions[4 * chunk.start : 4 * chunk.stop] = (lower * count // place_count).T.ravel()
-    for number in range(count):
-        corners = np.concatenate(
-            [
-                np.flatnonzero(divisions[chunk] == number) + chunk.start
-                for chunk in chunks(len(divisions), EDGES_AT_ONCE)
-            ]
-        )
-        keys = np.empty(len(corners), np.int64)
-        for chunk in chunks(len(corners), CORNERS_AT_ONCE):
-            some = corners[chunk]
-            start, end = places[some & 3, some >> 2], places[(some + 1) & 3, some >> 2]
-            keys[chunk] = edge_keys(start, end, place_count)
-        yield keys, corners
+        keys[chunk] = edge_keys(start, np.roll(start, -1, axis=0), count).T
+    # Sort the edges so that equal edges of one part become neighbors.
+    keys = keys.ravel()
+    order = (
+        np.lexsort((np.repeat(part_numbers, 4), keys)) if several_parts else np.argsort(keys, kind="stable")
+    )
+    for first in range(int(np.count_nonzero(keys < 0)), len(order), CORNERS_AT_ONCE):
+        corners = order[first : first + CORNERS_AT_ONCE + 1]
+        shared = keys[corners[1:]] == keys[corners[:-1]]
+        if several_parts:
+            parts = part_numbers[corners >> 2]
+            shared &= parts[1:] == parts[:-1]
+        shared = np.flatnonzero(shared)
+        yield corners[shared], corners[shared + 1]
 
 
 def edge_keys(start: Indices, end: Indices, place_count: int) -> Numbers:
@@ -389,15 +345,6 @@ def group_numbers(parents: Indices) -> Indices:
         others = items[~is_root]
         groups[others] = groups[roots_of(parents, others)]
     return groups
-
-
-def united_items(parents: Indices) -> Indices:
-    """The items that are not the root of their group, ascending."""
-    parts = [
-        np.flatnonzero(parents[chunk] != np.arange(chunk.start, chunk.stop)) + chunk.start
-        for chunk in chunks(len(parents), CORNERS_AT_ONCE)
-    ]
-    return np.concatenate([np.empty(0, np.intp), *parts])
 
 
 def roots_of(parents: Indices, items: Indices) -> Indices:

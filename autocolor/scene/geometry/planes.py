@@ -31,7 +31,7 @@ import numpy as np
 from autocolor import arrays
 from autocolor.arrays import Booleans, Floats, Indices, LowBits, chunks, cross, dot
 from autocolor.immutable import Immutable
-from autocolor.scene.geometry.normals import edge_keys, places_of_corners, roots_of, unite, united_items
+from autocolor.scene.geometry.normals import edge_keys, places_of_corners, roots_of, unite
 
 TOLERANCE: Final = 3e-6
 """Assumed: polygons lie in one plane if no corner is farther from it than this fraction of their largest
@@ -186,7 +186,7 @@ def _groups(mesh: Polygons) -> tuple[Indices, Indices]:
                 unite(parents, some[widest], some[members])
                 # The widest polygon alone stands for its group in the other grids.
                 left[some[members[members != widest]]] = False
-    united = united_items(parents)
+    united = np.flatnonzero(parents != np.arange(len(parents)))
     roots = roots_of(parents, united)
     firsts = np.unique(roots)
     polygons, roots = np.concatenate([firsts, united]), np.concatenate([firsts, roots])
