@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, Final, TypeVar, Unpack
 
 from autocolor.arrays import Floats
@@ -31,7 +31,6 @@ from autocolor.scene.columns import (
     Problem,
     Row,
     RowError,
-    RowKey,
     Tier,
     column_of,
     cost,
@@ -205,30 +204,37 @@ class Scene(Row):
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
         if self.lights is not REFUSED:
             yield from islice(following_problems(self.lights), MOST_PROBLEMS)
-        if self.surfaces is not REFUSED and len(self.surfaces) > MOST_SURFACES:
-            yield Problem(
-                ("surfaces",),
-                f"must be at most {MOST_SURFACES}, not {len(self.surfaces)}; let parts share a surface",
-            )
-        if self.views is not REFUSED and len(self.views) > MOST_VIEWS:
-            text = f"must be at most {MOST_VIEWS}, not {len(self.views)}; remove named views"
-            yield Problem(("views",), text)
+        for table, most, advice in (
+            ("surfaces", MOST_SURFACES, "let parts share a surface"),
+            ("views", MOST_VIEWS, "remove named views"),
+        ):
+            rows = vars(self)[table]
+            if rows is not REFUSED and len(rows) > most:
+                yield Problem((table,), f"must be at most {most}, not {len(rows)}; {advice}")
 
     def _reference_problems(self) -> Iterator[Problem]:
         """The problems of references to rows that are not in their tables."""
-        tables: list[tuple[type[Row], Sequence[Row]]] = [(Scene, (self,))]
-        for table, column in fields_of(Scene).items():
-            rows = vars(self)[table]
-            if isinstance(column.kind, RowList) and rows is not REFUSED:
-                tables.append((column.kind.row_class, rows))
-        if isinstance(self.scalar, Scalar):
-            tables.append((Scalar, (self.scalar,)))
-        for row_class, rows in tables:
-            for key, at in references_of(row_class).items():
+        tables = {
+            name: vars(self)[name]
+            for name, column in fields_of(Scene).items()
+            if isinstance(column.kind, RowList) and vars(self)[name] is not REFUSED
+        }
+        names = {table: {row.name: None for row in rows} for table, rows in tables.items()}
+        scalars = (self.scalar,) if isinstance(self.scalar, Scalar) else ()
+        for row in chain[Any]((self,), *tables.values(), scalars):
+            for key, at in references_of(type(row)).items():
                 kind: Any = at.column.kind
-                others = vars(self)[kind.table]
-                if others is not REFUSED:
-                    yield from _missing_names(rows, key, at, [row.name for row in others])
+                value = vars(row)[at.field]
+                if at.field != key:
+                    value = vars(value)[key] if isinstance(value, Row) else REFUSED
+                if value is REFUSED or value is None or kind.table not in names:
+                    continue
+                for name in kind.names_in(value):
+                    if name not in names[kind.table]:
+                        where = f"is not in the {kind.table.removesuffix('s')} table"
+                        close = nearest(name, [*kind.words, *names[kind.table]])
+                        label = f"{row_label(row)}: " if row_label(row) else ""
+                        yield Problem((), f"{label}{key} {shown(name)} {where}{close}")
 
     # A scene is equal to itself only; `equals` compares the columns.
     __eq__, __hash__ = object.__eq__, object.__hash__
@@ -476,22 +482,6 @@ class Scene(Row):
     def __repr__(self) -> str:
         counts = f"surfaces {len(self.surfaces)}, lights {len(self.lights)}"
         return f"Scene({self.name!r}: {self.mesh!r}, {counts})"
-
-
-def _missing_names(rows: Sequence[Row], key: str, at: RowKey, names: Sequence[str]) -> Iterator[Problem]:
-    """The problems of rows whose column `key` refers to a name that is not in `names`."""
-    existing = set(names)
-    kind: Any = at.column.kind
-    for row in rows:
-        value = vars(row)[at.field]
-        if at.field != key:
-            value = vars(value)[key] if isinstance(value, Row) else REFUSED
-        for name in () if value is REFUSED or value is None else kind.names_in(value):
-            if name not in existing:
-                table = f"the {kind.table.removesuffix('s')} table"
-                label = f"{row_label(row)}: " if row_label(row) else ""
-                close = nearest(name, [*kind.words, *names])
-                yield Problem((), f"{label}{key} {shown(name)} is not in {table}{close}")
 
 
 def check_scene(value: object) -> None:

@@ -88,22 +88,12 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> Pi
     polygons with reflex corners.
     """
     starts = np.cumsum(counts) - counts
-    is_small = (counts == 3) | (counts == 4)
-    for sides in (3, 4):
-        if not len(counts) or not (counts == sides).all():
-            continue
-        # Measured: if all polygons have the same number of sides, this takes half the time.
-        by_column = np.empty((4, len(counts)), np.intp)
-        by_column[:sides] = corners.reshape(-1, sides).T
-        by_column[3] = by_column[sides - 1]
-        if sides == 4:
-            is_small = ~crossed_quads(coordinates, by_column.T)
-        if is_small.all():
-            return Pieces(by_column.T, np.arange(len(counts)))
-    quads = np.flatnonzero(is_small & (counts == 4))
+    is_small, quads = (counts == 3) | (counts == 4), np.flatnonzero(counts == 4)
     is_small[quads] = ~crossed_quads(coordinates, corners[starts[quads, None] + np.arange(4)])
     small = np.flatnonzero(is_small)
     pieces = [corners[starts[small, None] + np.minimum(np.arange(4), counts[small, None] - 1)]]
+    if is_small.all():
+        return Pieces(pieces[0], small)
     owners, crossed = [small], [NONE]
     added: list[tuple[int, int, float]] = []
     large = np.flatnonzero((counts > 3) & ~is_small)
