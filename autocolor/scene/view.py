@@ -26,7 +26,6 @@ MOST_VIEWS: Final = 64
 ASPECT: Final = 640 / 480
 """Assumed: the width over the height of the paper's display."""
 
-
 VERTICAL: Final = 1e-9
 """Assumed: a view is vertical if the eye's horizontal distance from the target is a smaller part of its
 height over the target."""
