@@ -193,17 +193,21 @@ class _PowerOfCosine(ReflectionModel):
         """N."""
         return self.exponent
 
-    def specular(
-        self, incidence: RealArray[Real], eye: RealArray[Real], view: RealArray[Real]
-    ) -> RealArray[Real]:
-        """cos^N(E), times the growth of S."""
-        factor, growth = power(eye, self.exponent), self.growth.factor(incidence)
+    def grown(self, factor: RealArray[Real], incidence: RealArray[Real]) -> RealArray[Real]:
+        """A factor, in its own array, times the growth of S at some cosines of I."""
+        growth = self.growth.factor(incidence)
         return factor if growth is None else np.multiply(factor, growth, out=factor)
 
 
 @table_row
 class Phong(_PowerOfCosine):
     """cos^N(E). Paper: Figure 2."""
+
+    def specular(
+        self, incidence: RealArray[Real], eye: RealArray[Real], view: RealArray[Real]
+    ) -> RealArray[Real]:
+        """cos^N(E), times the growth of S."""
+        return self.grown(power(eye, self.exponent), incidence)
 
 
 @table_row
@@ -215,7 +219,7 @@ class BlinnPhong(_PowerOfCosine):
     ) -> RealArray[Real]:
         """(N.H)^N, times the growth of S."""
         normal, _ = _half_vector(incidence, eye, view)
-        return super().specular(incidence, normal, view)
+        return self.grown(power(normal, self.exponent), incidence)
 
 
 LEAST_FACING: Final = 0.3

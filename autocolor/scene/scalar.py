@@ -5,7 +5,7 @@ Paper: "Introduction": scalar variables such as stress on the surface of an obje
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
@@ -288,11 +288,3 @@ COMPUTED: Final = (
 Assumed: a scalar of the mesh hides a computed scalar of the same name, because a user who names it means the
 numbers of the file.
 """
-
-
-def name_problems(name: str, scalars: Iterable[MeshScalar]) -> Iterator[Problem]:
-    """The problem of a scalar's name that neither the mesh has nor `autocolor.scalars` computes."""
-    names = [*(scalar.name for scalar in scalars), *COMPUTED]
-    if name not in names:
-        rule = "must be a scalar of the mesh or a computed scalar"
-        yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, names)}")

@@ -57,16 +57,12 @@ from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
 from autocolor.scene.row_kinds import RangesByName, RowList, nested, references_of, table_row
-from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
+from autocolor.scene.scalar import COMPUTED, Scalar
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
 
 SomeTableRow = TypeVar("SomeTableRow", Part, Surface, Light, NamedView)
 
-SCALINGS: Final = ("surface", "object")
-CONTRASTS: Final = ("stretch", "floor")
-DIVISIONS: Final = ("covered", "equal")
-DITHERS: Final = ("off", "ordered")
 SCAN_LINE: Final = "scan line"
 INVARIANT: Final = "invariant"
 LINEAR: Final = "linear"
@@ -115,7 +111,7 @@ class Scene(Row):
         help="The intensity of every point without any light.",
     )
     scaling: str = one_of(
-        SCALINGS,
+        ("surface", "object"),
         default="surface",
         tier=Tier.LEVELS,
         help="Whether each surface has its own intensity range, or all surfaces share a range.",
@@ -124,7 +120,7 @@ class Scene(Row):
         CurveKind(CURVES), default="linear", tier=Tier.LEVELS, help="How intensities are mapped to levels."
     )
     contrast: str = one_of(
-        CONTRASTS,
+        ("stretch", "floor"),
         default="stretch",
         tier=Tier.ENTRIES,
         help="Whether the lowest level is black, or in proportion to the minimum intensity.",
@@ -138,13 +134,13 @@ class Scene(Row):
         " fixed: by surface, and for all other surfaces.",
     )
     dither: str = one_of(
-        DITHERS,
+        ("off", "ordered"),
         default="off",
         tier=Tier.LEVELS,
         help="Whether levels are rounded, or dithered by an ordered pattern.",
     )
     division: str = one_of(
-        DIVISIONS,
+        ("covered", "equal"),
         default="covered",
         tier=Tier.LEVELS,
         help="Whether surfaces get more levels the more of the picture they cover, or all the same number.",
@@ -196,7 +192,10 @@ class Scene(Row):
                 rule = "the part table must have the mesh's parts in their order"
                 yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
         if self.mesh is not REFUSED and isinstance(self.scalar, Scalar):
-            yield from name_problems(self.scalar.name, self.mesh.scalars)
+            names = [*(scalar.name for scalar in self.mesh.scalars), *COMPUTED]
+            if (name := self.scalar.name) not in names:
+                rule = "must be a scalar of the mesh or a computed scalar"
+                yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, names)}")
         if self.words == NORMALS and self.scalar is not None:
             rule = "must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or remove the"
             yield Problem(("words",), f"{rule} scalar")

@@ -63,17 +63,17 @@ class NodeNormals(Immutable):
         """The normals of several meshes as one, which have so many polygons; None if no mesh has any."""
         if all(each is None for each in normals):
             return None
-        vectors, numbers, first = [np.empty((3, 0), np.float32)], [], 0
-        for each, count in zip(normals, polygons, strict=True):
-            if each is None:
-                numbers.append(np.full((4, count), -1))
-            else:
-                vectors.append(each.vectors.T)
-                numbers.append(np.where(each.numbers.T < 0, -1, each.numbers.T + first))
-                first += len(each.vectors)
-        return NodeNormals(
-            read_only(np.concatenate(vectors, axis=1).T), read_only(np.concatenate(numbers, axis=1).T)
-        )
+        none = np.empty((0, 3), np.float32)
+        pairs = [
+            (none, np.full((count, 4), -1)) if each is None else (each.vectors, each.numbers)
+            for each, count in zip(normals, polygons, strict=True)
+        ]
+        firsts = np.cumsum([0, *(len(vectors) for vectors, _ in pairs)])
+        rows = [
+            np.where(own.T < 0, -1, own.T + first) for (_, own), first in zip(pairs, firsts, strict=False)
+        ]
+        vectors = np.concatenate([vectors.T for vectors, _ in pairs], axis=1)
+        return NodeNormals(read_only(vectors.T), read_only(np.concatenate(rows, axis=1).T))
 
 
 @underflowing
@@ -85,13 +85,19 @@ def node_normals(
 ) -> NodeNormals:
     """The normals at the corners of the polygons; a polygon without area adds nothing."""
     coordinate_rows, node_rows = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
-    normals, angles = _normals_and_angles(coordinate_rows, node_rows)
+    count = node_rows.shape[1]
+    normals, angles = np.empty((3, count), np.float64), np.empty((4, count), np.float64)
+    for chunk in chunks(count, POLYGONS_AT_ONCE):
+        corners = np.take(coordinate_rows, node_rows[:, chunk], axis=1)
+        normals[:, chunk] = polygon_normals(corners)
+        angles[:, chunk] = _corner_angles(corners)
     places = places_of_corners(coordinate_rows, node_rows)
     fans, opposite = fans_of_corners(places, part_numbers, normals, crease_angle)
     del places
 
     # Sum the normals of each fan, weighted by the angles.
-    vectors, numbers = _weighted_sums(fans, normals, angles)
+    vectors: Floats = np.stack([np.bincount(fans, (angles * row).T.ravel()) for row in normals])
+    numbers = np.array(fans.reshape(-1, 4).T, np.intp, order="C")
     del angles, fans
     if opposite:
         vectors, united = _united_with_opposite(vectors, opposite)
@@ -110,30 +116,6 @@ def node_normals(
         sizes[canceled] = 1.0
     vectors /= sizes
     return NodeNormals(read_only(vectors.astype(np.float32).T), read_only(numbers.T))
-
-
-def _normals_and_angles(coordinate_rows: Floats, node_rows: Indices) -> tuple[Floats, Floats]:
-    """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
-    count = node_rows.shape[1]
-    normals, angles = np.empty((3, count), np.float64), np.empty((4, count), np.float64)
-    for chunk in chunks(count, POLYGONS_AT_ONCE):
-        corners = np.take(coordinate_rows, node_rows[:, chunk], axis=1)
-        normals[:, chunk] = polygon_normals(corners)
-        angles[:, chunk] = _corner_angles(corners)
-    return normals, angles
-
-
-def _weighted_sums(fans: Indices, normals: Floats, angles: Floats) -> tuple[Floats, Indices]:
-    """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
-    sums = np.empty((3, int(fans.max(initial=-1)) + 1), np.float64)
-    sums[:] = 0.0
-    numbers: Indices = np.empty(angles.shape, np.intp)
-    for chunk in chunks(angles.shape[1], POLYGONS_AT_ONCE):
-        fan = fans[4 * chunk.start : 4 * chunk.stop]
-        numbers[:, chunk] = fan.reshape(-1, 4).T
-        for sum_row, normal_row in zip(sums, normals, strict=True):
-            np.add.at(sum_row, fan, (angles[:, chunk] * normal_row[chunk]).T.ravel())
-    return sums, numbers
 
 
 def _united_with_opposite(sums: Floats, opposite: list[Indices]) -> tuple[Floats, Indices]:
