@@ -192,10 +192,10 @@ class Scene(Row):
                 rule = "the part table must have the mesh's parts in their order"
                 yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
         if self.mesh is not REFUSED and isinstance(self.scalar, Scalar):
-            names = [*(scalar.name for scalar in self.mesh.scalars), *COMPUTED]
-            if (name := self.scalar.name) not in names:
+            name, scalars = self.scalar.name, self.scalar_names
+            if name not in scalars:
                 rule = "must be a scalar of the mesh or a computed scalar"
-                yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, names)}")
+                yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, scalars)}")
         if self.words == NORMALS and self.scalar is not None:
             rule = "must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or remove the"
             yield Problem(("words",), f"{rule} scalar")

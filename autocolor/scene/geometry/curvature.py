@@ -71,7 +71,7 @@ def curvatures(coordinates: Floats, node_numbers: Indices, normals: NodeNormals)
         equations = _equations(coordinate_rows, normals.vectors.T, node_rows.take(around), own.take(around))
         count = rows.stop - rows.start
         local = np.repeat(np.arange(count), counts[rows])
-        sums = np.stack([np.bincount(local, row, count) for row in equations])
+        sums: Floats = np.stack([np.bincount(local, row, count) for row in equations])
         values[:, rows] = _curvatures_of(_solved(sums))
     _take_from_closed(values, numbers)
     return Curvatures(read_only(values[0]), read_only(values[1]))

@@ -229,7 +229,7 @@ def fans_of_corners(
     parents[3::4] -= places[2] == places[3]
     least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
     opposite_corners = []
-    for one, other in _corners_at_shared_edges(places, part_numbers):
+    for one, other in corners_at_shared_edges(places, part_numbers):
         # Two polygons have opposite winding if both run along the shared edge in the same direction. Compare
         # the normal of the first then with the reversed normal of the second.
         opposite = places[one & 3, one >> 2] == places[other & 3, other >> 2]
@@ -246,7 +246,7 @@ def fans_of_corners(
     return fans, [fans[pairs] for pairs in opposite_corners]
 
 
-def _corners_at_shared_edges(places: Indices, part_numbers: Indices) -> Iterator[tuple[Indices, Indices]]:
+def corners_at_shared_edges(places: Indices, part_numbers: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Pairs of corners whose outgoing edges join the same two places in the same part, chunk by chunk.
 
     Where more than two polygons share an edge, each is paired with the next in the polygon table.
