@@ -132,6 +132,20 @@ def test_a_star_shaped_polygon_is_covered_once_in_any_plane(
     assert sum(areas) == pytest.approx(area(points, range(len(radii))))
 
 
+def test_polygons_of_a_count_are_clipped_alike_however_many_are_worked_on_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    random = np.random.default_rng(3)
+    radii, turns = random.uniform(0.3, 1, (7, 9)), np.arange(9) * 2 * math.pi / 9
+    points = np.stack([radii * np.cos(turns), radii * np.sin(turns), 0 * radii], axis=2).reshape(-1, 3)
+    polygons = (points, np.arange(63), np.full(7, 9))
+    at_once = split_polygons(*polygons)
+    monkeypatch.setattr(polygon_split, "PAIRS_AT_ONCE", 170)
+    in_chunks = split_polygons(*polygons)
+    assert in_chunks.corners.tolist() == at_once.corners.tolist()
+    assert in_chunks.owners.tolist() == at_once.owners.tolist()
+
+
 @given(st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=5, max_size=30))
 def test_clipping_ends_whatever_crosses(points: list[tuple[float, float]]) -> None:
     (pieces,) = clipped_ears(np.array([points], np.float64))

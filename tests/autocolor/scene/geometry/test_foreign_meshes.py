@@ -158,7 +158,7 @@ test_tables_that_break_a_rule_are_refused_in_a_sentence = refused(
         ((polydata(),), ALONE),
         ((POINTS, 3), "polygons must be a table of node numbers, not 3; give rows of them"),
         ((POINTS, "abc"), "polygons must be a table of node numbers, not 'abc'; give rows of them"),
-        ((POINTS, [[0, 1], QUAD]), f"{SIDES} [0, 1] (row 0); correct it"),
+        ((POINTS, [[0, 1], [1, 2]]), f"{SIDES} [0, 1] (row 0); correct it"),
         ((POINTS, [QUAD, [0, 1, 2.5]]), f"{SIDES} [0, 1, 2.5] (row 1); correct it"),
         ((POINTS, [QUAD, [0, 1, [2, 3]]]), f"{SIDES} [0, 1, [2, 3]] (row 1); correct it"),
         ((POINTS, [QUAD, [0, 1, 6]]), f"{NODE}, not 6 (row 1); correct it"),
