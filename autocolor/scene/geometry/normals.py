@@ -96,9 +96,10 @@ def node_normals(
     del places
 
     # Sum the normals of each fan, weighted by the angles.
-    vectors: Floats = np.stack([np.bincount(fans, (angles * row).T.ravel()) for row in normals])
+    sums = [np.bincount(fans, (angles * row).T.ravel()) for row in normals]
+    vectors = np.array(sums, np.float64)
     numbers = np.array(fans.reshape(-1, 4).T, np.intp, order="C")
-    del angles, fans
+    del angles, fans, sums
     if opposite:
         vectors, united = _united_with_opposite(vectors, opposite)
         numbers = united[numbers]
