@@ -89,9 +89,12 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> Pi
     """
     starts = np.cumsum(counts) - counts
     is_small, quads = (counts == 3) | (counts == 4), np.flatnonzero(counts == 4)
-    is_small[quads] = ~crossed_quads(coordinates, corners[starts[quads, None] + np.arange(4)])
+    of_quads = corners[starts[quads] + np.arange(4)[:, None]].T
+    is_small[quads] = ~crossed_quads(coordinates, of_quads)
+    if len(quads) == len(counts) and is_small.all():
+        return Pieces(of_quads, quads)
     small = np.flatnonzero(is_small)
-    pieces = [corners[starts[small, None] + np.minimum(np.arange(4), counts[small, None] - 1)]]
+    pieces = [corners[starts[small] + np.minimum(np.arange(4)[:, None], counts[small] - 1)].T]
     if is_small.all():
         return Pieces(pieces[0], small)
     owners, crossed = [small], [NONE]
