@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
@@ -57,7 +56,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "polygons": len(mesh.node_numbers),
         "triangles": mesh.triangle_count,
         "edges": mesh.edge_count,
-        "quads": dataclasses.asdict(quad_shapes(mesh)),
+        "quads": quad_shapes(mesh),
         "normals": normals_fact(mesh),
         "bounds": [low.tolist(), high.tolist()],
         "scalars": [scalar_facts(scalar) for scalar in mesh.scalars],

@@ -83,15 +83,11 @@ IN_TURN: Final = ("zebra", f"zebra{REVERSED}")
 """The scales whose colors repeat from band to band. Other scales mix their colors."""
 
 
-def _named_scales() -> dict[str, tuple[str, ...]]:
-    scales: dict[str, tuple[str, ...]] = {}
-    for name, table in SCALE_TABLES.items():
-        scales[name] = tuple(f"#{color}" for color in table.split())
-        scales[name + REVERSED] = scales[name][::-1]
-    return scales
-
-
-COLOR_SCALES: Final[Mapping[str, tuple[str, ...]]] = _named_scales()
+COLOR_SCALES: Final[Mapping[str, tuple[str, ...]]] = {
+    name + end: tuple(f"#{color}" for color in table.split()[::step])
+    for name, table in SCALE_TABLES.items()
+    for end, step in (("", 1), (REVERSED, -1))
+}
 """The colors of each named scale, at equal distances."""
 
 

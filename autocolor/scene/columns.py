@@ -22,13 +22,13 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from enum import IntEnum
 from functools import cache
 from typing import Any, ClassVar, Final, Generic, NamedTuple, Required, Self, TypedDict, TypeVar, Unpack, cast
 
 from autocolor.arrays import half_up
-from autocolor.checks import listed, nearest, shown
+from autocolor.checks import closest, listed, nearest, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable
 
@@ -103,8 +103,10 @@ class Kind(Generic[Value]):
     """The kind of values in a column: how they are checked, replaced, written and compared.
 
     A kind of values without fields defines `rule` and `accepted`, and may define `advice`. A kind of rows
-    defines `validated` instead of `accepted`.
+    defines `validated` instead of `accepted`. `names` are the words that it accepts, if any.
     """
+
+    names: Collection[str] = ()
 
     def rule(self) -> str:
         """The rule for a value, as part of a message: "must be true or false"."""
@@ -116,7 +118,7 @@ class Kind(Generic[Value]):
 
     def advice(self, value: object) -> str:
         """The end of the message about an invalid value, which says how to correct it."""
-        return ""
+        return closest(value, self.names) if isinstance(value, str) else ""
 
     def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         """The value converted for the row; REFUSED, with its problems appended, if it is invalid."""

@@ -166,9 +166,6 @@ def _with_created(
     refuse other names.
     """
     table = {surface.name: surface for surface in given}
-    if len(table) < len(given):
-        # The checks of Scene refuse repeated names.
-        return rows, given
     wanted = dict.fromkeys(row.surface for row in rows if row.surface in names or row.surface == shared)
     missing = [name for name in wanted if name not in table]
     for name in missing[: max(MOST_SURFACES - len(given), 0)]:

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, bounds_of, chunks, underflowing
+from autocolor.arrays import Floats, bounds_of, chunks, underflowing
 from autocolor.checks import Color
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
@@ -181,39 +181,29 @@ def framed(view: View, coordinates: Floats, aspect: float = ASPECT) -> View:
     # its shift and its least distance. Use the larger of the two distances.
     slope_y = FILLED * view.half_height(aspect)
     slopes = np.array([slope_y * aspect, slope_y])
-    least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
-    for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
-        camera_points = axes @ (points[:, chunk] - center[:, None])
-        reach = slopes[:, None] * camera_points[2]
-        least = np.minimum(least, (camera_points[:2] + reach).min(axis=1))
-        most = np.maximum(most, (camera_points[:2] - reach).max(axis=1))
-        nearest = min(nearest, float(camera_points[2].min()))
-        size = max(size, float(np.abs(camera_points).max()))
+    camera_points = np.concatenate(
+        [axes @ (points[:, chunk] - center[:, None]) for chunk in chunks(points.shape[1], POINTS_AT_ONCE)],
+        axis=1,
+    )
+    reach = slopes[:, None] * camera_points[2]
+    least, most = (camera_points[:2] + reach).min(axis=1), (camera_points[:2] - reach).max(axis=1)
     distances = (most - least) / (2 * slopes)
-    distance = max(*distances.tolist(), size * 1e-3 - nearest)
-    shifts = _centering_shifts(axes, points, center, distance, (least + most) / 2)
+    size = float(np.abs(camera_points).max())
+    distance = max(*distances.tolist(), size * 1e-3 - float(camera_points[2].min()))
+    shifts = _centering_shifts(camera_points, distance, (least + most) / 2)
     eye = center + axes.T @ np.array([*shifts, -distance])
     forward = axes[2]
     return view.replace(eye=tuple(eye), direction=tuple(forward))
 
 
-def _centering_shifts(
-    axes: Floats, points: Floats, center: Floats, distance: float, shifts: Floats
-) -> Floats:
+def _centering_shifts(camera_points: Floats, distance: float, shifts: Floats) -> Floats:
     """The shifts of the eye, right and down, that put the object into the middle of the picture.
 
     A step finds the two points at opposite borders, and centers them. A few steps are enough.
     """
     for _ in range(MOST_STEPS):
-        # Find the points at the four borders of each chunk, then among them the points at the borders of all.
-        places = []
-        for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
-            camera_points = axes @ (points[:, chunk] - center[:, None])
-            places.append(
-                np.take(camera_points, _at_borders(camera_points, distance, shifts).ravel(), axis=1)
-            )
-        camera_points = np.concatenate(places, axis=1)
-        at_borders = _at_borders(camera_points, distance, shifts)
+        on_screen = (camera_points[:2] - shifts[:, None]) / (camera_points[2] + distance)
+        at_borders = np.stack([on_screen.argmin(axis=1), on_screen.argmax(axis=1)], axis=1)
         # Make the screen coordinates of both points of an axis opposite.
         weights = 1 / (camera_points[2].take(at_borders) + distance)
         across = camera_points[[[0], [1]], at_borders]
@@ -222,12 +212,6 @@ def _centering_shifts(
             break
         shifts = centered
     return shifts
-
-
-def _at_borders(camera_points: Floats, distance: float, shifts: Floats) -> Indices:
-    """The points, columns, that are farthest left and right, and farthest up and down: (2, 2)."""
-    on_screen = (camera_points[:2] - shifts[:, None]) / (camera_points[2] + distance)
-    return np.stack([on_screen.argmin(axis=1), on_screen.argmax(axis=1)], axis=1)
 
 
 def _is_a_point(low: Floats, high: Floats) -> bool:

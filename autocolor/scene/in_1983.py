@@ -7,12 +7,11 @@ Paints, scalars and the division of the words stay: they are data of the table.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from autocolor.scene.lights import Flap, Flaps, Light, Links
-from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
+from autocolor.scene.lights import Flaps, Light, Links
+from autocolor.scene.reflection_models import Phong, ReflectionModel
 from autocolor.scene.surfaces import Surface
 
 OF_SCENE: Final[Mapping[str, Any]] = {
@@ -40,26 +39,18 @@ def changes_to_1983(surfaces: Sequence[Surface], lights: Sequence[Light]) -> dic
 
     Every surface has Phong's model, with about the highlight that it has, and an S that does not grow.
     """
-    return {**OF_SCENE, "surfaces": tuple(map(_surface, surfaces)), "lights": tuple(map(_light, lights))}
-
-
-def _surface(surface: Surface) -> Surface:
-    reflectance = surface.reflectance
-    model = Phong(_phong_exponent(reflectance.model))
-    return surface.replace(reflectance=dataclasses.replace(reflectance, model=model))
+    return {
+        **OF_SCENE,
+        "surfaces": [each.replace(model=Phong(_phong_exponent(each.reflectance.model))) for each in surfaces],
+        "lights": [each.replace(**OF_LIGHT, flaps=_sharp(each.flaps)) for each in lights],
+    }
 
 
 def _phong_exponent(model: ReflectionModel) -> float:
     """N of Phong's model with a highlight as wide: E is twice the angle of the half vector."""
-    if isinstance(model, (BlinnPhong, CookTorrance)):
-        return model.steepness / 4
-    return model.steepness
+    return model.steepness if isinstance(model, Phong) else model.steepness / 4
 
 
-def _light(light: Light) -> Light:
-    flaps = {axis: _sharp(flap) for axis, flap in vars(light.flaps).items()}
-    return light.replace(**OF_LIGHT, flaps=Flaps(**flaps))
-
-
-def _sharp(flap: Flap | None) -> Flap | None:
-    return None if flap is None else flap.replace(edge_width=0.0)
+def _sharp(flaps: Flaps) -> Any:
+    """The changes that give flaps sharp edges."""
+    return {axis: {"edge_width": 0.0} for axis, flap in vars(flaps).items() if flap is not None}

@@ -238,9 +238,6 @@ class OneOf(Kind[str]):
         require(isinstance(value, str) and value in self.names)
         return str(value)
 
-    def advice(self, value: object) -> str:
-        return closest(value, self.names) if isinstance(value, str) else ""
-
 
 def one_of(names: tuple[str, ...], **about: Unpack[About[Default]]) -> str | Default:
     """A field of several names."""
@@ -279,9 +276,6 @@ class CurveKind(Kind[str | AngleCurve]):
         points = _points(value, 1)
         require(all(one[1] <= other[1] for one, other in pairwise(points)))
         return points
-
-    def advice(self, value: object) -> str:
-        return closest(value, self.names) if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True, eq=False)

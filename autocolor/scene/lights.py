@@ -14,11 +14,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import compress
 from typing import ClassVar, Final, Unpack
 
 import numpy as np
 
-from autocolor.arrays import Floats, unit_vector
+from autocolor.arrays import unit_vector
 from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges, LightChanges, LinksChanges
@@ -159,9 +160,15 @@ class HalfSpace(Row):
             >>> HalfSpace.through("left", (0, 0, 0), (1, 0, 0), (0, 2, 0)).direction
             (0.0, 0.0, 1.0)
         """
-        points = _checked_points(name, a, b, c)
+        kind, problems = VectorKind(), list[Problem]()
+        vectors = [
+            kind.validated(point, (key,), problems) for key, point in zip("abc", (a, b, c), strict=True)
+        ]
+        if problems:
+            raise RowError(problems, f"half-space {name!r}")
+        points = np.array(vectors)
         # Scale the sides of the triangle first, so that no product over- or underflows.
-        to_b, to_c = (_scaled(points[number] - points[0]) for number in (1, 2))
+        to_b, to_c = (side / (np.abs(side).max() or 1.0) for side in points[1:] - points[0])
         across = np.cross(to_b, to_c)
         length = float(np.linalg.norm(across))
         if length <= LEAST_TURN * float(np.linalg.norm(to_b) * np.linalg.norm(to_c)):
@@ -175,21 +182,6 @@ class HalfSpace(Row):
     def replace(self, /, **changes: Unpack[HalfSpaceChanges]) -> HalfSpace:
         """The half-space with some fields changed."""
         return replaced(self, changes)
-
-
-def _checked_points(name: str, *points: Sequence[float]) -> Floats:
-    """The three points, (3, 3). Raises RowError unless they are finite."""
-    kind, problems = VectorKind(), list[Problem]()
-    vectors = [kind.validated(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
-    if problems:
-        raise RowError(problems, f"half-space {name!r}")
-    return np.array(vectors, np.float64)
-
-
-def _scaled(vector: Floats) -> Floats:
-    """The vector with a largest component of 1; zero stays zero."""
-    scaled: Floats = vector / (float(np.abs(vector).max()) or 1.0)
-    return scaled
 
 
 @table_row
@@ -376,17 +368,10 @@ class Light(Row):
         if self.aim is not None and self.aim == self.position:
             yield Problem((), f"the aim must differ from the position, {self.aim}; move one of them")
         if self.direction is None and self.aim is None:
-            for name, is_given in (
-                ("concentration", self.concentration > 0),
-                ("cone_angle", self.cone_angle is not None),
-                ("at_infinity", self.at_infinity is True),
-            ):
-                if is_given:
-                    rule = "must come with a direction or an aim, not with a point source; add an aim"
-                    yield Problem((name,), rule)
-        yield from self._rules_of_controls()
-
-    def _rules_of_controls(self) -> Iterator[Problem]:
+            rule = "must come with a direction or an aim, not with a point source; add an aim"
+            is_given = (self.concentration > 0, self.cone_angle is not None, self.at_infinity is True)
+            for name in compress(("concentration", "cone_angle", "at_infinity"), is_given):
+                yield Problem((name,), rule)
         inner, outer = self.inner_angle, self.cone_angle
         if inner is not None and outer is None:
             yield Problem(("inner_angle",), "must come with a cone, not without one; add a cone_angle")

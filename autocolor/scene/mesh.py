@@ -7,7 +7,7 @@ tables, and they never change afterwards.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import EllipsisType
@@ -15,9 +15,9 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, chunks, used_bounds, used_rows
+from autocolor.arrays import AnyArray, Floats, Indices, used_bounds, used_rows
 from autocolor.budget import require_memory
-from autocolor.checks import LARGEST_COORDINATE
+from autocolor.checks import LARGEST_COORDINATE, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
 from autocolor.logs import logger_of, timed
@@ -37,8 +37,6 @@ CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
 
 PART: Final = "mesh"
 """The name of the part of a mesh without parts."""
-
-POLYGONS_AT_ONCE: Final = 1 << 16
 
 UNIT: Final = 1e-5
 """Assumed: how far the square of the length of an own normal may be from 1."""
@@ -79,26 +77,20 @@ class Mesh(Immutable):
         if len(node_rows) == 3:
             node_rows = node_rows[[0, 1, 2, 2]]
         given = np.zeros(node_rows.shape[1], np.intp) if self.part_numbers is None else self.part_numbers
-        part_numbers = np.array(np.atleast_1d(_numbers(problems, "part numbers", given, np.intp)))
-        names = () if isinstance(self.part_names, str) else self.part_names
-        names = tuple(names) if isinstance(names, Iterable) else ()
-        if isinstance(self.part_names, str) or not all(isinstance(name, str) and name for name in names):
-            problems.append(
-                f"part table: part names must be strings, one for each part, not {self.part_names!r}"
-            )
-            names = tuple(map(repr, names))
-        of_angle: list[Problem] = []
-        angle = CREASE_ANGLES.validated(self.crease_angle, ("crease_angle",), of_angle)
-        problems.extend(f"mesh: {problem.sentence}" for problem in of_angle)
-        if coordinate_rows.size and not (
-            coordinate_rows.min() >= -LARGEST_COORDINATE and coordinate_rows.max() <= LARGEST_COORDINATE
-        ):
-            row = int(np.flatnonzero(~(np.abs(coordinate_rows) <= LARGEST_COORDINATE).all(axis=0))[0])
+        part_numbers = np.array(_numbers(problems, "part numbers", given, np.intp), ndmin=1)
+        node_count, polygon_count = coordinate_rows.shape[1], node_rows.shape[1]
+        wrong = ~(np.abs(coordinate_rows) <= LARGEST_COORDINATE).all(axis=0)
+        if wrong.any():
             problems.append(
                 f"node table: coordinates must be finite and at most 1e30 in size, not"
-                f" {coordinate_rows[:, row].tolist()} (row {row})"
+                f" {coordinate_rows[:, wrong.argmax()].tolist()} (row {wrong.argmax()})"
             )
-        node_count, polygon_count = coordinate_rows.shape[1], node_rows.shape[1]
+        names = tuple(self.part_names) if isinstance(self.part_names, (list, tuple)) else (None,)
+        if not all(isinstance(name, str) and name for name in names):
+            rule = "part names must be strings, one for each part"
+            problems.append(f"part table: {rule}, not {shown(self.part_names)}")
+        elif len(set(names)) != len(names):
+            problems.append("part table: part names must differ, not repeat")
         if has_nodes:
             _check_rows(problems, "polygon table: a node number", node_rows, node_count, "node table")
         _check_rows(problems, "polygon table: a part number", part_numbers, len(names), "part table")
@@ -107,8 +99,9 @@ class Mesh(Immutable):
                 f"polygon table: there must be one part number a polygon ({polygon_count}), not an"
                 f" array of shape {part_numbers.shape}"
             )
-        if len(set(names)) != len(names):
-            problems.append("part table: part names must differ, not repeat")
+        of_angle: list[Problem] = []
+        angle = CREASE_ANGLES.validated(self.crease_angle, ("crease_angle",), of_angle)
+        problems.extend(f"mesh: {problem.sentence}" for problem in of_angle)
         scalars = tuple(self.scalars)
         problems.extend(scalar_problems(scalars, node_count, polygon_count))
         if self.own_normals is not None:
@@ -193,15 +186,10 @@ class Mesh(Immutable):
     @property
     def edge_count(self) -> int:
         """How many distinct edges the polygons have (the paper counts 17,940 for its car)."""
-        keys = np.empty((4, len(self.node_numbers)), np.int64)
-        for chunk in chunks(keys.shape[1], POLYGONS_AT_ONCE):
-            start = self.node_numbers.T[:, chunk]
-            keys[:, chunk] = edge_keys(start, np.roll(start, -1, axis=0), len(self.coordinates))
-        in_order = keys.ravel()
-        in_order.sort()
-        changes = np.count_nonzero(in_order[1:] != in_order[:-1])
+        start = self.node_numbers.T
+        keys = edge_keys(start, np.roll(start, -1, axis=0), len(self.coordinates))
         # The edge from a node to itself in a triangle, with the key -1, does not count.
-        return int(changes) + bool(len(in_order) and in_order[0] >= 0)
+        return len(np.unique(keys[keys >= 0]))
 
     @property
     def triangle_count(self) -> int:
@@ -342,40 +330,34 @@ def _problems_of_normals(normals: NodeNormals, polygons: int) -> Iterator[str]:
 
 def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, table: str) -> None:
     """Note the first number, or the first column of numbers, that is no row of a table."""
-    if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
-        return
-    missing = (numbers < 0) | (numbers >= count)
-    row = int(np.flatnonzero(missing.any(axis=0) if missing.ndim > 1 else missing)[0])
-    rule = f"{what} must be a row of the {table} (0 to {count - 1})"
-    problems.append(f"{rule}, not {numbers[..., row].tolist()} (row {row})")
+    missing = np.atleast_2d((numbers < 0) | (numbers >= count)).any(axis=0)
+    if missing.any():
+        row = int(missing.argmax())
+        rule = f"{what} must be a row of the {table} (0 to {count - 1})"
+        problems.append(f"{rule}, not {numbers[..., row].tolist()} (row {row})")
 
 
 def has_same_tables(one: Mesh, other: Mesh) -> bool:
     """Whether all tables, scalars and own normals of two meshes are equal, whatever their crease angles."""
     if one is other:
         return True
-    return (
-        _have_same_own_normals(one, other)
-        and one.part_names == other.part_names
-        and [(scalar.name, scalar.of) for scalar in one.scalars]
-        == [(scalar.name, scalar.of) for scalar in other.scalars]
-        and np.array_equal(one.coordinates, other.coordinates)
-        and np.array_equal(one.node_numbers, other.node_numbers)
-        and np.array_equal(one.part_numbers, other.part_numbers)
-        and all(
-            np.array_equal(scalar.values, same.values, equal_nan=True)
-            for scalar, same in zip(one.scalars, other.scalars, strict=True)
-        )
+    if one.part_names != other.part_names:
+        return False
+    ones, others = _arrays(one), _arrays(other)
+    return list(ones) == list(others) and all(
+        np.array_equal(array, others[name], equal_nan=True) for name, array in ones.items()
     )
 
 
-def _have_same_own_normals(one: Mesh, other: Mesh) -> bool:
-    mine, others = one.own_normals, other.own_normals
-    if mine is None or others is None:
-        return mine is others
-    return mine.numbers.shape == others.numbers.shape and all(
-        np.array_equal(mine.vectors[rows][is_own], others.vectors[other_rows][is_own])
-        and np.array_equal(is_own, other_rows >= 0)
-        for rows, other_rows in zip(mine.numbers.T, others.numbers.T, strict=True)
-        for is_own in [rows >= 0]
-    )
+def _arrays(mesh: Mesh) -> dict[tuple[str, str], AnyArray]:
+    """The tables, scalars and own normals at the corners of a mesh, by name and what they are of."""
+    arrays: dict[tuple[str, str], AnyArray] = {
+        (name, "mesh"): vars(mesh)[name] for name in ("coordinates", "node_numbers", "part_numbers")
+    }
+    arrays |= {(scalar.name, scalar.of): scalar.values for scalar in mesh.scalars}
+    if (own := mesh.own_normals) is not None:
+        # A corner without a normal has the number -1.
+        arrays["normals", "mesh"] = np.append(own.vectors, np.full((1, 3), np.nan, np.float32), axis=0)[
+            own.numbers
+        ]
+    return arrays

@@ -6,14 +6,13 @@ it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from autocolor.arrays import (
-    AnyArray,
     Booleans,
     Floats,
     Indices,
@@ -26,7 +25,7 @@ from autocolor.arrays import (
     used_rows,
 )
 from autocolor.immutable import read_only
-from autocolor.scene.geometry.normals import MIXER, edge_keys, group_numbers, unite
+from autocolor.scene.geometry.normals import edge_keys, group_numbers, places_of_nodes, unite
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
@@ -82,28 +81,8 @@ class Fault:
 @underflowing
 def mesh_faults(mesh: Mesh) -> tuple[Fault, ...]:
     """The faults of a mesh, in the order of KINDS, without the kinds that it does not have."""
-    coordinates, node_numbers = mesh.coordinates, mesh.node_numbers
-    edges = edge_faults(node_numbers, len(coordinates))
-    shapes = polygon_shapes(coordinates, node_numbers)
-    unwelded = nodes_at_one_place(coordinates, node_numbers)
-    is_unwelded = np.zeros(len(coordinates), np.bool_)
-    is_unwelded[unwelded] = True
-    unused = np.flatnonzero(~used_rows(node_numbers.T, len(coordinates)))
-    repeated = repeated_polygons(node_numbers)
-    holes = tuple(holes_of(coordinates, edges.borders))
-    faults = (
-        Fault("border", EDGE, edges.borders, edges.border_polygons, holes),
-        Fault("unwelded", NODE, unwelded, np.flatnonzero(is_unwelded[node_numbers.T].any(axis=0))),
-        Fault("unused", NODE, unused, np.empty(0, np.intp)),
-        Fault("warped", POLYGON, shapes.warped, shapes.warped),
-        Fault("concave", POLYGON, shapes.concave, shapes.concave),
-        Fault("crossed", POLYGON, shapes.crossed, shapes.crossed),
-        Fault("turned", EDGE, edges.turned, edges.turned_polygons),
-        Fault("repeated", POLYGON, repeated, repeated),
-        Fault("crowded", EDGE, edges.crowded, edges.crowded_polygons),
-        Fault("without area", POLYGON, shapes.without_area, shapes.without_area),
-    )
-    return tuple(fault for fault in faults if len(fault.rows))
+    faults = (*edge_faults(mesh), *node_faults(mesh), *polygon_faults(mesh))
+    return tuple(sorted((fault for fault in faults if len(fault.rows)), key=lambda fault: fault.number))
 
 
 def fault_scalar(mesh: Mesh, faults: Sequence[Fault]) -> MeshScalar:
@@ -114,55 +93,29 @@ def fault_scalar(mesh: Mesh, faults: Sequence[Fault]) -> MeshScalar:
     return MeshScalar(FAULT, read_only(values), POLYGON)
 
 
-@dataclass(frozen=True, eq=False)
-class EdgeFaults:
-    """Edges, (edges, 2) rows of nodes, and the rows of the polygons that have them, ascending.
+def edge_faults(mesh: Mesh) -> Iterator[Fault]:
+    """The edges that are borders, turned or crowded.
 
     A border has one polygon, a shared edge two polygons, and a crowded edge three or more. If the polygons of
     a shared edge face the same side, they run along it in opposite directions. Along a turned edge both run
     in the same direction. Edges are compared by their nodes alone: nodes at the same place are not joined.
     """
-
-    borders: Indices
-    border_polygons: Indices
-    turned: Indices
-    turned_polygons: Indices
-    crowded: Indices
-    crowded_polygons: Indices
-
-
-def edge_faults(node_numbers: Indices, node_count: int) -> EdgeFaults:
-    """The edges of a polygon table, (polygons, 4), that are borders, turned or crowded."""
-    starts = np.ascontiguousarray(node_numbers.T)
+    starts = np.ascontiguousarray(mesh.node_numbers.T)
     ends = np.roll(starts, -1, axis=0)
     # An edge from a node to itself closes a triangle: leave it out.
-    places = np.flatnonzero(starts.ravel() != ends.ravel())
-    start, end = starts.ravel()[places], ends.ravel()[places]
-    keys = edge_keys(start, end, node_count)
+    corners = np.flatnonzero(starts.ravel() != ends.ravel())
+    start, end = starts.ravel()[corners], ends.ravel()[corners]
+    keys = edge_keys(start, end, len(mesh.coordinates))
     order = np.argsort(keys)
-    is_first = np.diff(keys[order], prepend=-1) != 0
-    firsts = np.flatnonzero(is_first)
+    firsts = np.flatnonzero(np.diff(keys[order], prepend=-1))
     counts = np.diff(firsts, append=len(order))
-    pairs = firsts[counts == 2]
     runs_up = (start < end)[order]
-    turned = pairs[runs_up[pairs] == runs_up[pairs + 1]]
-    crowded = counts > 2
-
-    def edges(at: Indices) -> Indices:
-        return np.stack([start[order[at]], end[order[at]]], axis=1)
-
-    def polygons(at: Indices) -> Indices:
-        return np.unique(places[order[at]] % len(node_numbers))
-
-    borders = firsts[counts == 1]
-    return EdgeFaults(
-        edges(borders),
-        polygons(borders),
-        edges(turned),
-        polygons(np.concatenate([turned, turned + 1])),
-        edges(firsts[crowded]),
-        polygons(runs(firsts[crowded], counts[crowded])),
-    )
+    is_turned = (counts == 2) & (runs_up[firsts] == runs_up.take(firsts + 1, mode="clip"))
+    for kind, chosen in (("border", counts == 1), ("turned", is_turned), ("crowded", counts > 2)):
+        first, uses = order[firsts[chosen]], order[runs(firsts[chosen], counts[chosen])]
+        edges = np.stack([start[first], end[first]], axis=1)
+        holes = holes_of(mesh.coordinates, edges) if kind == "border" else ()
+        yield Fault(kind, EDGE, edges, np.unique(corners[uses] % len(mesh.node_numbers)), tuple(holes))
 
 
 @dataclass(frozen=True)
@@ -175,7 +128,7 @@ class Hole:
 
     edges: int
     length: float
-    center: tuple[float, float, float]
+    center: tuple[float, ...]
     node: int
     is_closed: bool
 
@@ -188,71 +141,52 @@ def holes_of(coordinates: Floats, borders: Indices) -> list[Hole]:
     ends = ends.reshape(-1, 2)
     parents = np.arange(len(nodes))
     unite(parents, ends[:, 0], ends[:, 1])
-    group_of_node = group_numbers(parents)
-    group = group_of_node[ends[:, 0]]
-    count = int(group_of_node.max()) + 1
+    groups = group_numbers(parents)
+    order = np.argsort(groups, kind="stable")
+    firsts = np.flatnonzero(np.diff(groups[order], prepend=-1))
     places = coordinates[nodes]
-    edge_counts = np.bincount(group, minlength=count)
-    long = np.bincount(group, lengths((places[ends[:, 0]] - places[ends[:, 1]]).T), minlength=count)
+    low, high = (least.reduceat(places[order], firsts) for least in (np.minimum, np.maximum))
     # At each node of a closed loop two edges meet.
-    branches = np.bincount(ends.ravel(), minlength=len(nodes)) != 2
-    is_open = np.bincount(group_of_node, branches, minlength=count) > 0
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, group_of_node, places)
-    np.maximum.at(high, group_of_node, places)
-    first = np.full(count, len(coordinates))
-    np.minimum.at(first, group_of_node, nodes)
-    centers = (low / 2 + high / 2).tolist()
-    return [
-        Hole(
-            int(edge_counts[row]),
-            float(long[row]),
-            tuple(centers[row]),
-            int(first[row]),
-            not bool(is_open[row]),
-        )
-        for row in np.argsort(-long, kind="stable").tolist()
-    ]
+    is_open = np.logical_or.reduceat((np.bincount(ends.ravel()) != 2)[order], firsts)
+    group = groups[ends[:, 0]]
+    length = np.bincount(group, lengths((places[ends[:, 0]] - places[ends[:, 1]]).T))
+    columns = (np.bincount(group), length, low / 2 + high / 2, nodes[order[firsts]], ~is_open)
+    longest = np.argsort(-length, kind="stable")
+    rows = zip(*(column[longest].tolist() for column in columns), strict=True)
+    return [Hole(edges, long, tuple(center), *rest) for edges, long, center, *rest in rows]
 
 
-@dataclass(frozen=True)
-class QuadShapes:
-    """Counts of quads: all, quads that are not flat, quads with one reflex corner, and bow-ties."""
-
-    quads: int
-    warped: int
-    concave: int
-    crossed: int
-
-
-@dataclass(frozen=True, eq=False)
-class Shapes:
-    """The rows of the polygons of each shape; a polygon may have several."""
-
-    warped: Indices
-    concave: Indices
-    crossed: Indices
-    without_area: Indices
-
-
-def quad_shapes(mesh: Mesh) -> QuadShapes:
-    """The counts for a mesh; a concave or crossed quad may also count as warped."""
-    shapes = polygon_shapes(mesh.coordinates, mesh.node_numbers)
-    quads = len(mesh.node_numbers) - mesh.triangle_count
-    return QuadShapes(quads, len(shapes.warped), len(shapes.concave), len(shapes.crossed))
+def node_faults(mesh: Mesh) -> Iterator[Fault]:
+    """The nodes at the place of another node, both used by polygons, and the nodes that no polygon uses."""
+    is_used = used_rows(mesh.node_numbers.T, len(mesh.coordinates))
+    is_unwelded = np.zeros(len(is_used), np.bool_)
+    places = places_of_nodes(mesh.coordinates.T)
+    if places is not None:
+        is_unwelded = is_used & (np.bincount(places[is_used], minlength=len(places))[places] > 1)
+    polygons = np.flatnonzero(is_unwelded[mesh.node_numbers.T].any(axis=0))
+    yield Fault("unwelded", NODE, np.flatnonzero(is_unwelded), polygons)
+    yield Fault("unused", NODE, np.flatnonzero(~is_used), np.empty(0, np.intp))
 
 
 @underflowing
-def polygon_shapes(coordinates: Floats, node_numbers: Indices) -> Shapes:
-    """The rows of warped, concave and crossed quads, and of polygons without area."""
-    rows_of_shapes: tuple[list[Indices], ...] = ([], [], [], [])
-    for chunk in chunks(len(node_numbers), POLYGONS_AT_ONCE):
-        rows = node_numbers[chunk]
-        shapes = _shapes(np.ascontiguousarray(coordinates[rows].T), rows[:, 2] != rows[:, 3])
-        for parts, mask in zip(rows_of_shapes, shapes, strict=True):
-            parts.append(np.flatnonzero(mask) + chunk.start)
-    none = np.empty(0, np.intp)
-    return Shapes(*(np.concatenate([none, *parts]) for parts in rows_of_shapes))
+def polygon_faults(mesh: Mesh) -> Iterator[Fault]:
+    """The quads that are warped, concave or crossed, and the polygons without area or with a twin."""
+    shapes = np.empty((4, len(mesh.node_numbers)), np.bool_)
+    for chunk in chunks(shapes.shape[1], POLYGONS_AT_ONCE):
+        rows = mesh.node_numbers[chunk]
+        corners = np.ascontiguousarray(mesh.coordinates[rows].T)
+        shapes[:, chunk] = _shapes(corners, rows[:, 2] != rows[:, 3])
+    for kind, mask in zip(("warped", "concave", "crossed", "without area"), shapes, strict=True):
+        yield Fault(kind, POLYGON, np.flatnonzero(mask), np.flatnonzero(mask))
+    repeated = repeated_polygons(mesh.node_numbers)
+    yield Fault("repeated", POLYGON, repeated, repeated)
+
+
+def quad_shapes(mesh: Mesh) -> dict[str, int]:
+    """Counts of quads: all, and those of each shape; a concave or crossed quad may also be warped."""
+    counts = {fault.kind: len(fault.rows) for fault in polygon_faults(mesh)}
+    quads = len(mesh.node_numbers) - mesh.triangle_count
+    return {"quads": quads, **{kind: counts[kind] for kind in ("warped", "concave", "crossed")}}
 
 
 def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Booleans, Booleans]:
@@ -290,34 +224,7 @@ def repeated_polygons(node_numbers: Indices) -> Indices:
     # A triangle repeats its last node: leave it out.
     nodes[nodes[:, 2] == nodes[:, 3], 3] = -1
     nodes.sort(axis=1)
-    return repeated_rows(nodes)
-
-
-def nodes_at_one_place(coordinates: Floats, node_numbers: Indices) -> Indices:
-    """The rows of used nodes that have the same place as another used node, ascending."""
-    rows = np.flatnonzero(used_rows(node_numbers.T, len(coordinates)))
-    # Adding zero makes -0.0 and 0.0 the same bits.
-    places = np.ascontiguousarray(coordinates[rows] + 0.0)
-    repeated: Indices = rows[repeated_rows(places.view(np.int64).reshape(len(rows), 3))]
-    return repeated
-
-
-def repeated_rows(table: AnyArray) -> Indices:
-    """The rows of a table of whole numbers, (rows, columns), that equal another row, ascending."""
-    if not len(table):
-        return np.empty(0, np.intp)
-    # Equal rows have equal sums of their mixed columns: compare only the rows with equal sums.
-    sums = np.zeros(len(table), np.uint64)
-    for column in table.astype(np.int64, copy=False).T:
-        sums = (sums ^ np.ascontiguousarray(column).view(np.uint64)) * MIXER
-        sums ^= sums >> np.uint64(29)
-    order = np.argsort(sums, kind="stable")
-    is_next_equal = sums[order[1:]] == sums[order[:-1]]
-    candidates = order[np.append(is_next_equal, False) | np.append([False], is_next_equal)]
-    if not len(candidates):
-        return np.empty(0, np.intp)
-    rows = table[candidates]
-    by_value = np.lexsort(rows.T)
-    is_same = (rows[by_value[1:]] == rows[by_value[:-1]]).all(axis=1)
-    repeats = by_value[np.append(is_same, False) | np.append([False], is_same)]
-    return np.sort(candidates[repeats])
+    order = np.lexsort(nodes.T)
+    is_repeated = np.zeros(len(order) + 1, np.bool_)
+    is_repeated[1:-1] = (nodes[order[1:]] == nodes[order[:-1]]).all(axis=1)
+    return np.sort(order[is_repeated[1:] | is_repeated[:-1]])

@@ -5,7 +5,7 @@ Paper: "Introduction": scalar variables such as stress on the surface of an obje
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
@@ -221,21 +221,15 @@ class MeshScalar(Immutable):
         else:
             if values.dtype != np.float64 or values.flags.writeable:
                 values = read_only(np.array(values, np.float64))
-            if problem := _endless(values):
-                problems.append(f"{label}: {problem}")
+            # Comparisons with NaN are false, without a warning.
+            is_endless = (values > LARGEST_SCALAR) | (values < -LARGEST_SCALAR)
+            if is_endless.any():
+                row = is_endless.argmax()
+                rule = "a value must be at most 1e30 in size, or NaN if it is missing"
+                problems.append(f"{label}: {rule}, not {values[row]:g} (row {row})")
         if problems:
             raise InputError(problems)
         object.__setattr__(self, "values", values)
-
-
-def _endless(values: Floats) -> str | None:
-    """The problem of the first value that is infinite or too large; None if there is no such value."""
-    # Comparisons with NaN are false, without a warning.
-    rows = np.flatnonzero((values > LARGEST_SCALAR) | (values < -LARGEST_SCALAR))
-    if not len(rows):
-        return None
-    row = rows[0]
-    return f"a value must be at most 1e30 in size, or NaN if it is missing, not {values[row]:g} (row {row})"
 
 
 def scalar_problems(scalars: Sequence[MeshScalar], nodes: int, polygons: int) -> Iterator[str]:
@@ -294,11 +288,3 @@ COMPUTED: Final = (
 Assumed: a scalar of the mesh hides a computed scalar of the same name, because a user who names it means the
 numbers of the file.
 """
-
-
-def name_problems(name: str, scalars: Iterable[MeshScalar]) -> Iterator[Problem]:
-    """The problem of a scalar's name that neither the mesh has nor `autocolor.scalars` computes."""
-    names = [*(scalar.name for scalar in scalars), *COMPUTED]
-    if name not in names:
-        rule = "must be a scalar of the mesh or a computed scalar"
-        yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, names)}")

@@ -6,9 +6,9 @@ cost of the edit is found by comparing the two scenes (see `Tier`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, Final, NoReturn, TypeVar, Unpack
 
 from autocolor.arrays import Floats
@@ -31,7 +31,6 @@ from autocolor.scene.columns import (
     Problem,
     Row,
     RowError,
-    RowKey,
     Tier,
     column_of,
     cost,
@@ -66,16 +65,12 @@ from autocolor.scene.row_kinds import (
     references_of,
     table_row,
 )
-from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
+from autocolor.scene.scalar import COMPUTED, Scalar
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
 
 SomeTableRow = TypeVar("SomeTableRow", Part, Surface, Light, NamedView)
 
-SCALINGS: Final = ("surface", "object")
-CONTRASTS: Final = ("stretch", "floor")
-DIVISIONS: Final = ("covered", "equal")
-DITHERS: Final = ("off", "ordered")
 SCAN_LINE: Final = "scan line"
 INVARIANT: Final = "invariant"
 LINEAR: Final = "linear"
@@ -124,7 +119,7 @@ class Scene(Row):
         help="The intensity of every point without any light.",
     )
     scaling: str = one_of(
-        SCALINGS,
+        ("surface", "object"),
         default="surface",
         tier=Tier.LEVELS,
         help="Whether each surface has its own intensity range, or all surfaces share a range.",
@@ -133,7 +128,7 @@ class Scene(Row):
         CurveKind(CURVES), default="linear", tier=Tier.LEVELS, help="How intensities are mapped to levels."
     )
     contrast: str = one_of(
-        CONTRASTS,
+        ("stretch", "floor"),
         default="stretch",
         tier=Tier.ENTRIES,
         help="Whether the lowest level is black, or in proportion to the minimum intensity.",
@@ -147,13 +142,13 @@ class Scene(Row):
         " fixed: by surface, and for all other surfaces.",
     )
     dither: str = one_of(
-        DITHERS,
+        ("off", "ordered"),
         default="off",
         tier=Tier.LEVELS,
         help="Whether levels are rounded, or dithered by an ordered pattern.",
     )
     division: str = one_of(
-        DIVISIONS,
+        ("covered", "equal"),
         default="covered",
         tier=Tier.LEVELS,
         help="Whether surfaces get more levels the more of the picture they cover, or all the same number.",
@@ -208,7 +203,10 @@ class Scene(Row):
                 rule = "the part table must have the mesh's parts in their order"
                 yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
         if self.mesh is not REFUSED and isinstance(self.scalar, Scalar):
-            yield from name_problems(self.scalar.name, self.mesh.scalars)
+            name, scalars = self.scalar.name, self.scalar_names
+            if name not in scalars:
+                rule = "must be a scalar of the mesh or a computed scalar"
+                yield Problem(("scalar", "name"), f"{rule}, not {shown(name)}{nearest(name, scalars)}")
         if self.words == NORMALS and self.scalar is not None:
             rule = "must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or remove the"
             yield Problem(("words",), f"{rule} scalar")
@@ -216,30 +214,37 @@ class Scene(Row):
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
         if self.lights is not REFUSED:
             yield from islice(following_problems(self.lights), MOST_PROBLEMS)
-        if self.surfaces is not REFUSED and len(self.surfaces) > MOST_SURFACES:
-            yield Problem(
-                ("surfaces",),
-                f"must be at most {MOST_SURFACES}, not {len(self.surfaces)}; let parts share a surface",
-            )
-        if self.views is not REFUSED and len(self.views) > MOST_VIEWS:
-            text = f"must be at most {MOST_VIEWS}, not {len(self.views)}; remove named views"
-            yield Problem(("views",), text)
+        for table, most, advice in (
+            ("surfaces", MOST_SURFACES, "let parts share a surface"),
+            ("views", MOST_VIEWS, "remove named views"),
+        ):
+            rows = vars(self)[table]
+            if rows is not REFUSED and len(rows) > most:
+                yield Problem((table,), f"must be at most {most}, not {len(rows)}; {advice}")
 
     def _reference_problems(self) -> Iterator[Problem]:
         """The problems of references to rows that are not in their tables."""
-        tables: list[tuple[type[Row], Sequence[Row]]] = [(Scene, (self,))]
-        for table, column in fields_of(Scene).items():
-            rows = vars(self)[table]
-            if isinstance(column.kind, RowList) and rows is not REFUSED:
-                tables.append((column.kind.row_class, rows))
-        if isinstance(self.scalar, Scalar):
-            tables.append((Scalar, (self.scalar,)))
-        for row_class, rows in tables:
-            for key, at in references_of(row_class).items():
+        tables = {
+            name: vars(self)[name]
+            for name, column in fields_of(Scene).items()
+            if isinstance(column.kind, RowList) and vars(self)[name] is not REFUSED
+        }
+        names = {table: {row.name: None for row in rows} for table, rows in tables.items()}
+        scalars = (self.scalar,) if isinstance(self.scalar, Scalar) else ()
+        for row in chain[Any]((self,), *tables.values(), scalars):
+            for key, at in references_of(type(row)).items():
                 kind: Any = at.column.kind
-                others = vars(self)[kind.table]
-                if others is not REFUSED:
-                    yield from _missing_names(rows, key, at, [row.name for row in others])
+                value = vars(row)[at.field]
+                if at.field != key:
+                    value = vars(value)[key] if isinstance(value, Row) else REFUSED
+                if value is REFUSED or value is None or kind.table not in names:
+                    continue
+                for name in kind.names_in(value):
+                    if name not in names[kind.table]:
+                        where = f"is not in the {kind.table.removesuffix('s')} table"
+                        close = nearest(name, [*kind.words, *names[kind.table]])
+                        label = f"{row_label(row)}: " if row_label(row) else ""
+                        yield Problem((), f"{label}{key} {shown(name)} {where}{close}")
 
     # A scene is equal to itself only; `equals` compares the columns.
     __eq__, __hash__ = object.__eq__, object.__hash__
@@ -495,22 +500,6 @@ class Scene(Row):
     def __repr__(self) -> str:
         counts = f"surfaces {len(self.surfaces)}, lights {len(self.lights)}"
         return f"Scene({self.name!r}: {self.mesh!r}, {counts})"
-
-
-def _missing_names(rows: Sequence[Row], key: str, at: RowKey, names: Sequence[str]) -> Iterator[Problem]:
-    """The problems of rows whose column `key` refers to a name that is not in `names`."""
-    existing = set(names)
-    kind: Any = at.column.kind
-    for row in rows:
-        value = vars(row)[at.field]
-        if at.field != key:
-            value = vars(value)[key] if isinstance(value, Row) else REFUSED
-        for name in () if value is REFUSED or value is None else kind.names_in(value):
-            if name not in existing:
-                table = f"the {kind.table.removesuffix('s')} table"
-                label = f"{row_label(row)}: " if row_label(row) else ""
-                close = nearest(name, [*kind.words, *names])
-                yield Problem((), f"{label}{key} {shown(name)} is not in {table}{close}")
 
 
 def check_scene(value: object) -> None:

@@ -1,124 +1,60 @@
 """Paints to pick from: swatches, a field of colors, and finishes, which look like plastic, metal or glass.
 
 The columns of swatches are hues. The rows go from light to dark, and then to muted paints. Grays are at the
-left, and paints of cars of the time at the right. Lightness and hue are coordinates of Oklab (B. Ottosson,
-2020, "A perceptual color space for image processing"), in which equal steps look about equal. The chroma of a
-hue is a share of the largest that a monitor can show at its lightness, up to a limit. Assumed: the rows, the
-limits and the paints of cars.
+left, and paints of cars of the time at the right: cream, champagne, silver, gold, orange, red, maroon, blue,
+racing green, black. Lightness and hue are coordinates of Oklab (B. Ottosson, 2020, "A perceptual color space
+for image processing"), in which equal steps look about equal: 18 hues 20 degrees apart, each with nearly the
+largest chroma that a monitor can show at its lightness, up to a limit. Assumed: the rows, the limits and the
+paints of cars.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Floats, components_of
+from autocolor.arrays import Bytes
 from autocolor.checks import Color, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.immutable import read_only
 from autocolor.scene.changes import SurfaceChanges
 from autocolor.scene.surfaces import Surface
 
-FIRST_HUE: Final = 20.0
-"""The angle of the first hue in Oklab, in degrees: red."""
+SWATCHES: Final = """
+    ffffff fadddc faded4 fadfca fae1b8 efe6b1 deecb8 cdf1c5 bdf4d5 b1f5e6
+    adf3f7 c4ecfa d1e8fa d9e5fa e0e3fa e8e0fa f4dafa fadaee fadbe3 f2eee2
+    e4e4e4 fcbfbe fcc2ae fcc498 fbc86d ead33f c4e05c 96ea83 5cf1ac 3eefd5
+    3eebf4 87e0fb a7d8fb b9d2fb c8cdfb d8c7fb f0bbfb fcb9e5 fcbdcf d6c8a8
+    cacaca fb9797 fb9b79 fb9e4a eaab27 ceb927 aac628 6dd456 2ed792 2ed3bb
+    2dcfd7 2dcaf2 6bc1fb 90b8fb aab0fb c4a5fb e790fb fb8ad8 fb92b4 c4c8cc
+    aeaeae fc5e68 fc6427 df8018 c79018 b09c19 90a819 40b919 1db77a 1db39e
+    1db0b7 1daccf 1ca5ef 5f9afb 8a8dfb ae7bfb dd52fb fc3acd fc5396 e0b030
+    929292 ea1942 d54e12 b96912 a57712 918112 768b13 349913 169765 169483
+    169197 168eab 1589c6 2878fa 6e66fa 9b49fa c31ae3 d718ae e3197a d65c1c
+    777777 bd1233 ab3d0c 95530c 845e0c 74670c 5e6f0d 287a0d 10794f 107668
+    0f7479 0f7189 0f6d9f 0b5cd5 5830f9 8215e1 9c13b6 ad118b b71161 b01020
+    5d5d5d 910b25 832d07 723e07 654707 584e07 475407 1c5d07 095c3b 095a4f
+    09585c 095669 08527a 0645a4 4311cb 630ead 780b8c 850b6a 8c0b49 6c141c
+    424242 680518 5d1e03 502b03 473103 3d3603 313b03 114104 044028 043f36
+    043e40 043c4a 043957 033076 2e0993 46077c 550664 5f054b 640533 1e4a80
+    292929 c89695 c69889 c19c7f b8a17a ada67b 9fab80 91ae8b 84b198 81b0a6
+    81aeb1 80adbb 83aac7 90a6ca 9da1ca aa9dc5 b699bc bf96b0 c595a3 163e30
+    000000 7c504f 7b5244 715844 6a5b44 635e44 5a6244 4b6646 486555 48645e
+    486365 48636b 476174 4a5e80 575a7f 63567b 6d5373 755068 7a4f5c 101216
+"""
+"""The hexadecimal colors of the field, ROWS rows from left to right, each on two lines."""
 
-HUES: Final = 18
-
-
-class Shade(NamedTuple):
-    """A row of hues: their lightness, from 0 to 1, and their chroma, as a share of the largest possible."""
-
-    lightness: float
-    share: float
-    most: float = 0.4
-
-
-SHADES: Final = (
-    Shade(0.92, 0.80, 0.07),
-    Shade(0.86, 0.92, 0.16),
-    Shade(0.78, 0.94, 0.19),
-    Shade(0.69, 0.96),
-    Shade(0.60, 0.96),
-    Shade(0.51, 0.96),
-    Shade(0.42, 0.96),
-    Shade(0.33, 0.96),
-    Shade(0.72, 0.40, 0.06),
-    Shade(0.48, 0.40, 0.06),
-)
-"""Rows of light, full and dark paints, and two rows of muted paints."""
-
-GRAYS: Final = (1.0, 0.92, 0.84, 0.75, 0.66, 0.57, 0.48, 0.38, 0.28, 0.0)
-"""The lightness of the grays, from white to black."""
-
-CAR_PAINTS: Final = (
-    (242, 238, 226), (214, 200, 168), (196, 200, 204), (224, 176, 48), (214, 92, 28),
-    (176, 16, 32), (108, 20, 28), (30, 74, 128), (22, 62, 48), (16, 18, 22),
-)  # fmt: skip
-"""Cream, champagne, silver, gold, orange, red, maroon, blue, racing green, black."""
-
-ROWS: Final = len(SHADES)
-COLUMNS: Final = HUES + 2
+ROWS: Final = 10
+COLUMNS: Final = 20
 
 
 @cache
 def swatches() -> Bytes:
     """The colors of the field, (ROWS * COLUMNS, 3) uint8, read-only, row by row from left to right."""
-    field = np.empty((ROWS, COLUMNS, 3), np.uint8)
-    hues = np.radians(FIRST_HUE + np.arange(HUES) * 360 / HUES)
-    around = np.stack([np.cos(hues), np.sin(hues)], axis=1)
-    for row, shade in enumerate(SHADES):
-        chroma = np.minimum(shade.share * _strongest(shade.lightness, around), shade.most)
-        field[row, 1:-1] = _bytes(_oklab(shade.lightness, around, chroma))
-    field[:, 0] = _bytes(_oklab(np.array(GRAYS), np.zeros((ROWS, 2)), np.zeros(ROWS)))
-    field[:, -1] = CAR_PAINTS
-    return read_only(field.reshape(-1, 3))
-
-
-def _oklab(lightness: float | Floats, around: Floats, chroma: Floats) -> Floats:
-    """Colors in Oklab, (n, 3), of hues as unit vectors (n, 2)."""
-    return np.column_stack([np.broadcast_to(lightness, len(around)), around * chroma[:, None]])
-
-
-def _strongest(lightness: float, around: Floats) -> Floats:
-    """The largest chroma of each hue that a monitor can show, (n,), found by bisection."""
-    low, high = np.zeros(len(around)), np.full(len(around), 0.5)
-    for _ in range(24):
-        middle = (low + high) / 2
-        linear = _linear(_oklab(lightness, around, middle))
-        is_shown = ((linear >= 0) & (linear <= 1)).all(axis=1)
-        low, high = np.where(is_shown, middle, low), np.where(is_shown, high, middle)
-    return low
-
-
-# Ottosson's matrices: to the cube roots of the responses of the cones, and from the responses to linear sRGB.
-CONES: Final = np.array(
-    [
-        [1.0, 0.3963377774, 0.2158037573],
-        [1.0, -0.1055613458, -0.0638541728],
-        [1.0, -0.0894841775, -1.2914855480],
-    ]
-)
-LINEAR: Final = np.array(
-    [
-        [4.0767416621, -3.3077115913, 0.2309699292],
-        [-1.2684380046, 2.6097574011, -0.3413193965],
-        [-0.0041960863, -0.7034186147, 1.7076147010],
-    ]
-)
-
-
-def _linear(oklab: Floats) -> Floats:
-    """Linear red, green and blue, (n, 3), of colors in Oklab; beyond 0 to 1 if no monitor can show them."""
-    linear: Floats = (oklab @ CONES.T) ** 3 @ LINEAR.T
-    return linear
-
-
-def _bytes(oklab: Floats) -> Bytes:
-    """The colors, (n, 3) uint8, rounded half up."""
-    return components_of(np.clip(_linear(oklab), 0, 1))
+    return read_only(np.frombuffer(bytes.fromhex(SWATCHES), np.uint8).reshape(-1, 3))
 
 
 WHITE: Final = (255, 255, 255)

@@ -26,7 +26,6 @@ MOST_VIEWS: Final = 64
 ASPECT: Final = 640 / 480
 """Assumed: the width over the height of the paper's display."""
 
-
 VERTICAL: Final = 1e-9
 """Assumed: a view is vertical if the eye's horizontal distance from the target is a smaller part of its
 height over the target."""
@@ -117,21 +116,15 @@ class View(Row):
         length = math.hypot(x, y, z)
         x, y, z = x / length, y / length, z / length
         # Right is forward x up, and down is forward x right. Measured: np.cross takes ten times as long.
-        right, flat = (y, -x, 0.0), math.hypot(x, y)
+        u, v, w, flat = y, -x, 0.0, math.hypot(x, y)
         # Closer to the vertical than this, rounding errors would determine the rotation of the picture.
-        if flat < 1e-9:
-            right, flat = (-z, 0.0, x), math.hypot(z, x)
-        u, v, w = right[0] / flat, right[1] / flat, right[2] / flat
-        forward, right, down = (x, y, z), (u, v, w), (y * w - z * v, z * u - x * w, x * v - y * u)
+        if flat < VERTICAL:
+            u, v, w, flat = -z, 0.0, x, math.hypot(z, x)
+        u, v, w = u / flat, v / flat, w / flat
+        right, down = np.array([u, v, w]), np.array([y * w - z * v, z * u - x * w, x * v - y * u])
         turn = math.radians(self.angle)
         cosine, sine = math.cos(turn), math.sin(turn)
-        axes = np.array(
-            [
-                [cosine * a - sine * b for a, b in zip(right, down, strict=True)],
-                [sine * a + cosine * b for a, b in zip(right, down, strict=True)],
-                forward,
-            ]
-        )
+        axes = np.array([cosine * right - sine * down, sine * right + cosine * down, (x, y, z)])
         return read_only(axes)
 
     def half_height(self, aspect: float) -> float:

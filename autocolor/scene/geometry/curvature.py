@@ -17,13 +17,12 @@ nodes is less than 1 % off.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks_of_runs, cross, dot, underflowing
+from autocolor.arrays import Floats, Indices, Singles, chunks_of_runs, cross, dot, underflowing
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.geometry.normals import NodeNormals
 
@@ -57,66 +56,39 @@ class Curvatures(Immutable):
 def curvatures(coordinates: Floats, node_numbers: Indices, normals: NodeNormals) -> Curvatures:
     """The curvatures at the normals of a mesh; 0 where a normal has no polygon with area.
 
-    Arguments are as in `Mesh`. The work is done in chunks, with 5 more numbers a polygon.
+    Arguments are as in `Mesh`. The equations are solved in chunks, with 5 more numbers a polygon.
     """
-    count = len(normals.vectors)
     numbers = np.ascontiguousarray(normals.numbers.T)
     node_rows, coordinate_rows = np.ascontiguousarray(node_numbers.T), np.ascontiguousarray(coordinates.T)
-    order = np.argsort(numbers.ravel(), kind="stable")
-    corner_counts = np.bincount(numbers.ravel(), minlength=count)
-    values, closed = np.empty((2, count)), np.empty(count, np.bool_)
-    for corners in _corners(order, corner_counts, node_rows, numbers):
-        local = np.repeat(np.arange(len(corners.counts)), corners.counts)
-        equations = _equations(coordinate_rows, normals.vectors.T, corners)
-        sums = [np.bincount(local, row, len(corners.counts)) for row in equations]
-        values[:, corners.rows] = _curvatures_of(_solved(np.stack(sums)))
-        # Each edge within a fan leads to one corner after and to one before.
-        ends = (corners.neighbors[0] - corners.neighbors[2]).astype(np.float64)
-        closed[corners.rows] = np.bincount(local, ends, len(corners.counts)) == 0
-    if not closed.all():
-        inner = values.copy()
-        for corners in _corners(order, corner_counts, node_rows, numbers):
-            if not closed[corners.rows].all():
-                _take_from_closed(values, inner, closed, corners)
+    own, polygons = numbers.ravel(), numbers.shape[1]
+    order = np.argsort(own, kind="stable")
+    counts = np.bincount(own, minlength=len(normals.vectors))
+    values = np.empty((2, len(counts)))
+    for rows, places in chunks_of_runs(counts, CORNERS_AT_ONCE):
+        # The corners of a chunk of normals, and the three other corners of their polygons.
+        corner, polygon = np.divmod(order[places], polygons)
+        around = (corner + np.arange(4)[:, None]) % 4 * polygons + polygon
+        equations = _equations(coordinate_rows, normals.vectors.T, node_rows.take(around), own.take(around))
+        count = rows.stop - rows.start
+        local = np.repeat(np.arange(count), counts[rows])
+        sums: Floats = np.stack([np.bincount(local, row, count) for row in equations])
+        values[:, rows] = _curvatures_of(_solved(sums))
+    _take_from_closed(values, numbers)
     return Curvatures(read_only(values[0]), read_only(values[1]))
 
 
-class Corners(NamedTuple):
-    """The corners of polygons at some normals.
-
-    `rows` are these normals, and `counts` the number of corners of each. `own`, (corners,), has the normal at
-    each corner, and `neighbors`, (3, corners), the normals at the corners after, across and before. `nodes`,
-    (4, corners), has the columns of the nodes at the corner and at these three.
-    """
-
-    rows: slice
-    counts: Indices
-    own: Indices
-    nodes: Indices
-    neighbors: Indices
-
-
-def _corners(order: Indices, counts: Indices, node_rows: Indices, numbers: Indices) -> Iterator[Corners]:
-    """The corners, which `order` sorts by their normals, in chunks of normals."""
-    polygons = node_rows.shape[1]
-    for rows, places in chunks_of_runs(counts, CORNERS_AT_ONCE):
-        corner, polygon = np.divmod(order[places], polygons)
-        around = (corner + np.arange(4)[:, None]) % 4 * polygons + polygon
-        there = numbers.ravel().take(around)
-        yield Corners(rows, counts[rows], there[0], node_rows.ravel().take(around), there[1:])
-
-
-def _equations(coordinate_rows: Floats, vector_rows: Singles, corners: Corners) -> Floats:
+def _equations(coordinate_rows: Floats, vector_rows: Singles, nodes: Indices, numbers: Indices) -> Floats:
     """The terms that each corner adds to the equations of its normal, (20, corners).
 
-    They are the upper triangle of the matrix by rows, and the right side.
+    They are the upper triangle of the matrix by rows, and the right side. `nodes` and `numbers` are the nodes
+    and the normals at the corner and at the corners after, across and before, (4, corners).
     """
-    normal = np.take(vector_rows, corners.own, axis=1).astype(np.float64)
+    normal = np.take(vector_rows, numbers[0], axis=1).astype(np.float64)
     across, upward = _tangents(normal)
-    points = np.take(coordinate_rows, corners.nodes, axis=1)
-    sums = np.zeros((UNKNOWNS * (UNKNOWNS + 3) // 2, len(corners.own)))
+    points = np.take(coordinate_rows, nodes, axis=1)
+    sums = np.zeros((UNKNOWNS * (UNKNOWNS + 3) // 2, numbers.shape[1]))
     triangles = (points == np.roll(points, 1, axis=1)).all(axis=0).any(axis=0)
-    for step, neighbor in enumerate(corners.neighbors, start=1):
+    for step, neighbor in enumerate(numbers[1:], start=1):
         edge = points[:, step] - points[:, 0]
         turn = np.take(vector_rows, neighbor, axis=1) - normal
         square = dot(edge, edge)
@@ -179,18 +151,22 @@ def _curvatures_of(unknowns: Floats) -> Floats:
     return np.stack([mean, (a * c - b * b) / (square * square)])
 
 
-def _take_from_closed(values: Floats, inner: Floats, closed: Booleans, corners: Corners) -> None:
-    """Give each normal of a fan with a rim the mean of the `inner` values of neighbors with closed fans."""
-    count = len(corners.counts)
-    local = np.repeat(np.arange(count), corners.counts)
+def _take_from_closed(values: Floats, numbers: Indices) -> None:
+    """Give each normal of a fan with a rim the mean of the values of its neighbors with closed fans."""
+    own, count = numbers.ravel(), values.shape[1]
+    after, across, before = (np.roll(numbers, -step, axis=0).ravel() for step in (1, 2, 3))
+    # Each edge within a fan leads to one corner after and to one before.
+    closed = np.bincount(own, after - before, count) == 0
+    if closed.all():
+        return
     counts, sums = np.zeros(count), np.zeros((2, count))
-    for neighbor in corners.neighbors:
+    for neighbor in (after, across, before):
         weight = closed[neighbor].astype(np.float64)
-        counts += np.bincount(local, weight, count)
-        for sum_row, row in zip(sums, inner, strict=True):
-            sum_row += np.bincount(local, weight * row[neighbor], count)
-    rims = np.flatnonzero(~closed[corners.rows] & (counts > 0))
-    values[:, rims + corners.rows.start] = sums[:, rims] / counts[rims]
+        counts += np.bincount(own, weight, count)
+        for sum_row, row in zip(sums, values, strict=True):
+            sum_row += np.bincount(own, weight * row[neighbor], count)
+    rims = np.flatnonzero(~closed & (counts > 0))
+    values[:, rims] = sums[:, rims] / counts[rims]
 
 
 def _tangents(normals: Floats) -> tuple[Floats, Floats]:

@@ -6,19 +6,19 @@ taken, but no colors, normals or groups. A polygon of more than four sides is sp
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from os import PathLike
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Indices
+from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.immutable import read_only
 from autocolor.logs import logger_of
-from autocolor.scene.geometry.polygon_split import MOST_CORNERS, Pieces, crossed_quads, split_polygons
+from autocolor.scene.geometry.polygon_split import MOST_CORNERS, split_polygons
 from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
 
 LOG: Final = logger_of(__name__)
@@ -27,69 +27,71 @@ FLAT_CELLS: Final = ("triangle", "quad", "polygon")
 """The cells of meshio that are polygons; some files add the number of sides to "polygon", as in polygon5."""
 
 
-class ForeignTables(NamedTuple):
-    """The node table, the polygon table and the scalars of a mesh of another program, not yet checked."""
-
-    nodes: Any
-    polygons: Any
-    scalars: tuple[MeshScalar, ...] = ()
-
-
-def foreign_tables(source: object, polygons: object = None) -> ForeignTables:
-    """The tables of a mesh of another program, for the checks of `Mesh`.
+def foreign_tables(source: object, polygons: object = None) -> tuple[Floats, Indices, tuple[MeshScalar, ...]]:
+    """The node table, the polygon table, (polygons, 4), and the scalars of a mesh of another program.
 
     If `polygons` are given, (polygons, 3), (polygons, 4), or a list of lists of any lengths, `source` has the
     nodes, (nodes, 3). Otherwise `source` has `vertices` and `faces`, as in trimesh; `points` and `faces`, as
-    in PyVista's PolyData; or `points` and `cells`, as in meshio. The latter two may have scalars. Raises
-    InputError, and UsageError for anything else.
+    in PyVista's PolyData; or `points` and `cells`, as in meshio. The latter two may have scalars. `Mesh`
+    checks the coordinates. Raises InputError, and UsageError for anything else.
     """
-    scalars: tuple[MeshScalar, ...] = ()
-    nodes = source
-    if polygons is None:
-        nodes, polygons = _nodes_and_polygons(source)
-        pieces = _pieces(nodes, polygons)
-        cells = getattr(source, "cells", None)
-        blocks = _flat_blocks(cells) if isinstance(cells, (list, tuple)) else None
-        scalars = foreign_scalars(source, nodes, pieces.owners, blocks)
-    else:
-        pieces = _pieces(nodes, polygons)
+    nodes, rows = _nodes_and_polygons(source) if polygons is None else (source, polygons)
+    coordinates = _numbers(nodes)
+    if coordinates is None or coordinates.ndim != 2 or coordinates.shape[1] != 3:
+        given = type(nodes).__name__ if coordinates is None else coordinates.shape
+        raise InputError(f"nodes must be numbers of shape (nodes, 3), not {given}; convert them")
+    corners, counts = _corners_and_counts(rows)
+    outside = np.flatnonzero((corners < 0) | (corners >= len(coordinates)))
+    if len(outside):
+        row = int(np.searchsorted(np.cumsum(counts), outside[0], side="right"))
+        raise InputError(
+            f"a node number must be a row of the nodes (0 to {len(coordinates) - 1}), not"
+            f" {corners[outside[0]]} (row {row}); correct it"
+        )
+    # Coordinates may be infinite here.
+    with np.errstate(invalid="ignore", over="ignore"):
+        pieces = split_polygons(coordinates, corners, counts)
+    if split := int((counts > 4).sum()):
+        LOG.info("polygons with more than four corners that were split: %d", split)
+    scalars = foreign_scalars(source, len(coordinates), pieces.owners) if polygons is None else ()
     if len(pieces.crossed):
         LOG.info("polygons whose sides cross that were split: %d", len(pieces.crossed))
-        coordinates = np.asarray(nodes, np.float64)
-        nodes = np.concatenate([coordinates, pieces.added.between(coordinates)])
+        coordinates = np.concatenate([coordinates, pieces.added.between(coordinates)])
         scalars = tuple(pieces.added.with_scalar(each) for each in scalars)
-    return ForeignTables(nodes, pieces.corners, scalars)
+    return coordinates, pieces.corners, scalars
 
 
-def _pieces(nodes: object, polygons: Any) -> Pieces:
-    """The polygons split into triangles and quads; a table of these is not checked."""
+def _corners_and_counts(polygons: Any) -> tuple[Indices, Indices]:
+    """The nodes of all corners of polygons, and the number of corners of each. Raises InputError."""
     try:
         table = np.asarray(polygons)
     except ValueError:
         # Its rows differ in length.
         table = np.empty(0)
-    if table.ndim == 2 and len(table) and table.shape[1] in (3, 4):
-        if table.shape[1] == 4 and _has_crossed_quads(nodes, table):
-            return _split(nodes, table.astype(np.intp).ravel(), np.full(len(table), 4))
-        return Pieces(table, np.arange(len(table)))
-    rows = [_row(number, row) for number, row in enumerate(_iterated(polygons))]
+    if table.ndim == 0 and not isinstance(polygons, Iterator):
+        raise InputError(
+            f"polygons must be a table of node numbers, not {shown(polygons)}; give rows of them"
+        )
+    if table.ndim == 2 and table.size and table.dtype.kind in "iu" and 3 <= table.shape[1] <= MOST_CORNERS:
+        return table.astype(np.intp).ravel(), np.full(len(table), table.shape[1])
+    rows = [_row(number, row) for number, row in enumerate(polygons)]
     if not rows:
         raise InputError("a mesh must have polygons, not nodes alone; add some")
-    counts = np.array([len(row) for row in rows], np.intp)
-    return _split(nodes, np.concatenate(rows).astype(np.intp), counts)
+    return np.concatenate(rows).astype(np.intp), np.array([len(row) for row in rows], np.intp)
 
 
-def _has_crossed_quads(nodes: object, table: AnyArray) -> bool:
-    """Whether a table of quads has any whose sides cross; False for tables that `Mesh` will refuse."""
+def _row(number: int, row: object) -> AnyArray:
+    """The node numbers of one polygon. Raises InputError."""
     try:
-        coordinates = np.asarray(nodes, np.float64)
-    except (TypeError, ValueError):
-        return False
-    if coordinates.ndim != 2 or coordinates.shape[1] != 3 or table.dtype.kind not in "iu":
-        return False
-    if table.min() < 0 or table.max() >= len(coordinates) or not np.isfinite(coordinates).all():
-        return False
-    return bool(crossed_quads(coordinates, table).any())
+        corners = np.asarray(row)
+    except ValueError:
+        corners = np.empty(0)
+    if corners.ndim != 1 or corners.dtype.kind not in "iu" or not 3 <= len(corners) <= MOST_CORNERS:
+        raise InputError(
+            f"a polygon must have 3 to {MOST_CORNERS:,} node numbers, not {shown(row)} (row {number});"
+            " correct it"
+        )
+    return corners
 
 
 def _nodes_and_polygons(source: Any) -> tuple[Any, Any]:
@@ -170,76 +172,29 @@ def _polygons_of_cells(cells: Sequence[Any]) -> object:
     return list(chain.from_iterable(block.data for block in flat))
 
 
-def _iterated(polygons: object) -> Iterator[object]:
-    if isinstance(polygons, (str, bytes)) or not isinstance(polygons, Iterable):
-        raise InputError(
-            f"polygons must be a table of node numbers, not {shown(polygons)}; give rows of them"
-        )
-    return iter(polygons)
-
-
-def _row(number: int, row: object) -> AnyArray:
-    """The node numbers of one polygon. Raises InputError."""
-    try:
-        corners = np.asarray(row)
-    except ValueError:
-        corners = np.empty(0)
-    if corners.ndim != 1 or corners.dtype.kind not in "iu" or not 3 <= len(corners) <= MOST_CORNERS:
-        raise InputError(
-            f"a polygon must have 3 to {MOST_CORNERS:,} node numbers, not {shown(row)} (row {number});"
-            " correct it"
-        )
-    return corners
-
-
-def _split(nodes: object, corners: Indices, counts: Indices) -> Pieces:
-    """The pieces of polygons with any number of corners. Raises InputError."""
-    coordinates = np.asarray(nodes)
-    if coordinates.ndim != 2 or coordinates.shape[1] != 3 or coordinates.dtype.kind not in "iuf":
-        raise InputError(f"nodes must be numbers of shape (nodes, 3), not {coordinates.shape}; convert them")
-    outside = np.flatnonzero((corners < 0) | (corners >= len(coordinates)))
-    if len(outside):
-        row = int(np.searchsorted(np.cumsum(counts), outside[0], side="right"))
-        raise InputError(
-            f"a node number must be a row of the nodes (0 to {len(coordinates) - 1}), not"
-            f" {corners[outside[0]]} (row {row}); correct it"
-        )
-    pieces = split_polygons(coordinates.astype(np.float64), corners, counts)
-    if split := int((counts > 4).sum()):
-        LOG.info("polygons with more than four corners that were split: %d", split)
-    return pieces
-
-
-def foreign_scalars(
-    source: object, nodes: object, owners: Indices, blocks: Sequence[int] | None
-) -> tuple[MeshScalar, ...]:
+def foreign_scalars(source: Any, node_count: int, owners: Indices) -> tuple[MeshScalar, ...]:
     """The scalars in `point_data` and `cell_data` of a mesh, if it has them.
 
     Arrays of several components are left out. A number that is infinite or above 1e30 in size becomes
     missing. `owners` has the source polygon of each row of the polygon table; every source polygon has a row.
-    If the data of cells are lists with an array for each block, `blocks` are the blocks of polygons.
     """
+    cells = getattr(source, "cells", None)
+    blocks = _flat_blocks(cells) if isinstance(cells, (list, tuple)) else None
     scalars: dict[str, MeshScalar] = {}
-    of_polygons = (
-        (name, values if blocks is None else _joined(values, blocks))
-        for name, values in _items(source, "cell_data")
-    )
-    for of, count, rows, data in (
-        (NODE, _row_count(nodes), None, _items(source, "point_data")),
-        (POLYGON, int(owners.max(initial=-1)) + 1, owners, of_polygons),
-    ):
-        for name, given in data:
-            values = _numbers(given)
-            if values is None or values.shape != (count,) or len(scalars) >= MOST_SCALARS:
+    for of, count in ((NODE, node_count), (POLYGON, int(owners.max(initial=-1)) + 1)):
+        for name, given in _items(source, "point_data" if of == NODE else "cell_data"):
+            # The data of cells are lists with an array for each block.
+            values = _joined(given, blocks) if of == POLYGON and blocks is not None else _numbers(given)
+            if values is None or values.shape not in ((count,), (count, 1)) or len(scalars) >= MOST_SCALARS:
                 LOG.info("data of a %s left out, since they are no scalar: %s", of, name)
                 continue
+            values = values.ravel()
             with np.errstate(invalid="ignore"):
                 too_large = np.abs(values) > LARGEST_SCALAR
             if too_large.any():
                 LOG.info("values of scalar %s above 1e30 in size made missing: %d", name, too_large.sum())
-                values[too_large] = np.nan
+            values = np.where(too_large, np.nan, values)[... if of == NODE else owners]
             name = name if name not in scalars else f"{name} of {of}s"
-            values = values if rows is None else values[rows]
             scalars.setdefault(name, MeshScalar(name, read_only(values), of))
     return tuple(scalars.values())
 
@@ -251,29 +206,19 @@ def _items(source: Any, data: str) -> Iterator[tuple[str, Any]]:
         yield from ((name, values) for name, values in table.items() if isinstance(name, str) and name)
 
 
-def _row_count(table: object) -> int:
-    """The number of rows of a table; -1, which fits no data, if `Mesh` will refuse the table."""
-    try:
-        return len(np.asarray(table))
-    except (TypeError, ValueError):
-        return -1
-
-
-def _joined(values: Any, blocks: Sequence[int]) -> object:
+def _joined(values: Any, blocks: Sequence[int]) -> AnyArray | None:
     """The concatenated arrays of some blocks; None if they do not fit together."""
     try:
-        return np.concatenate([np.asarray(values[block]) for block in blocks])
+        return _numbers(np.concatenate([np.asarray(values[block]) for block in blocks]))
     except (TypeError, ValueError, LookupError):
         return None
 
 
 def _numbers(given: object) -> AnyArray | None:
-    """A copy of an array of one component as float64, (n,); None for anything else."""
+    """The values as an array of float64; None if they are no array of numbers."""
     try:
         values = np.asarray(given)
     except (TypeError, ValueError):
         return None
-    if values.dtype.kind not in "iuf" or not (values.ndim == 1 or values.shape[1:] == (1,)):
-        return None
     with np.errstate(over="ignore"):
-        return np.array(values.reshape(-1), np.float64)
+        return values.astype(np.float64, copy=False) if values.dtype.kind in "iuf" else None

@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, Singles, chunks, cross, lengths, underflowing
+from autocolor.arrays import AnyArray, Floats, Indices, Numbers, Singles, chunks, cross, lengths, underflowing
 from autocolor.immutable import Immutable, read_only
 
 CREASE_ANGLE: Final = 40.0
@@ -27,14 +27,6 @@ POLYGONS_AT_ONCE: Final = 1 << 13
 
 CORNERS_AT_ONCE: Final = 1 << 15
 """The polygons, corners or items of a chunk in the search for fans."""
-
-EDGES_AT_ONCE: Final = 1 << 22
-"""Edges that are sorted at once; more edges are divided by the lower of their places."""
-
-MOST_DIVISIONS: Final = 200
-
-LARGE: Final = 1 << 23
-"""The number of corners from which on their numbers take 32 bits instead of 64."""
 
 MIXER: Final = np.uint64(0x9E3779B97F4A7C15)
 """An odd number with well-spread bits, so that every bit of a factor changes the high bits of the product."""
@@ -71,17 +63,17 @@ class NodeNormals(Immutable):
         """The normals of several meshes as one, which have so many polygons; None if no mesh has any."""
         if all(each is None for each in normals):
             return None
-        vectors, numbers, first = [np.empty((3, 0), np.float32)], [], 0
-        for each, count in zip(normals, polygons, strict=True):
-            if each is None:
-                numbers.append(np.full((4, count), -1))
-            else:
-                vectors.append(each.vectors.T)
-                numbers.append(np.where(each.numbers.T < 0, -1, each.numbers.T + first))
-                first += len(each.vectors)
-        return NodeNormals(
-            read_only(np.concatenate(vectors, axis=1).T), read_only(np.concatenate(numbers, axis=1).T)
-        )
+        none = np.empty((0, 3), np.float32)
+        pairs = [
+            (none, np.full((count, 4), -1)) if each is None else (each.vectors, each.numbers)
+            for each, count in zip(normals, polygons, strict=True)
+        ]
+        firsts = np.cumsum([0, *(len(vectors) for vectors, _ in pairs)])
+        rows = [
+            np.where(own.T < 0, -1, own.T + first) for (_, own), first in zip(pairs, firsts, strict=False)
+        ]
+        vectors = np.concatenate([vectors.T for vectors, _ in pairs], axis=1)
+        return NodeNormals(read_only(vectors.T), read_only(np.concatenate(rows, axis=1).T))
 
 
 @underflowing
@@ -93,23 +85,27 @@ def node_normals(
 ) -> NodeNormals:
     """The normals at the corners of the polygons; a polygon without area adds nothing."""
     coordinate_rows, node_rows = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
-    normals, angles = _normals_and_angles(coordinate_rows, node_rows)
+    count = node_rows.shape[1]
+    normals, angles = np.empty((3, count), np.float64), np.empty((4, count), np.float64)
+    for chunk in chunks(count, POLYGONS_AT_ONCE):
+        corners = np.take(coordinate_rows, node_rows[:, chunk], axis=1)
+        normals[:, chunk] = polygon_normals(corners)
+        angles[:, chunk] = _corner_angles(corners)
     places = places_of_corners(coordinate_rows, node_rows)
     fans, opposite = fans_of_corners(places, part_numbers, normals, crease_angle)
     del places
 
     # Sum the normals of each fan, weighted by the angles.
-    vectors, numbers = _weighted_sums(fans, normals, angles)
-    del angles, fans
+    sums = [np.bincount(fans, (angles * row).T.ravel()) for row in normals]
+    vectors = np.array(sums, np.float64)
+    numbers = np.array(fans.reshape(-1, 4).T, np.intp, order="C")
+    del angles, fans, sums
     if opposite:
         vectors, united = _united_with_opposite(vectors, opposite)
-        for chunk in chunks(numbers.shape[1], POLYGONS_AT_ONCE):
-            numbers[:, chunk] = united[numbers[:, chunk]]
+        numbers = united[numbers]
 
     # Give a fan whose normals cancel out the normal of one of its polygons.
-    sizes = np.empty(vectors.shape[1:], np.float64)
-    for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
-        sizes[chunk] = lengths(vectors[:, chunk])
+    sizes = lengths(vectors)
     canceled = np.flatnonzero(sizes < 1e-9)
     if len(canceled):
         polygon_of_fan = np.zeros(vectors.shape[1], np.intp)
@@ -119,34 +115,8 @@ def node_normals(
         vectors[:, canceled] = normals[:, polygon_of_fan[canceled]]
         vectors[2, canceled[~vectors[:, canceled].any(axis=0)]] = 1.0
         sizes[canceled] = 1.0
-    singles: Singles = np.empty(vectors.shape, np.float32)
-    for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
-        singles[:, chunk] = vectors[:, chunk] / sizes[chunk]
-    return NodeNormals(read_only(singles.T), read_only(numbers.T))
-
-
-def _normals_and_angles(coordinate_rows: Floats, node_rows: Indices) -> tuple[Floats, Floats]:
-    """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
-    count = node_rows.shape[1]
-    normals, angles = np.empty((3, count), np.float64), np.empty((4, count), np.float64)
-    for chunk in chunks(count, POLYGONS_AT_ONCE):
-        corners = np.take(coordinate_rows, node_rows[:, chunk], axis=1)
-        normals[:, chunk] = polygon_normals(corners)
-        angles[:, chunk] = _corner_angles(corners)
-    return normals, angles
-
-
-def _weighted_sums(fans: Indices, normals: Floats, angles: Floats) -> tuple[Floats, Indices]:
-    """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
-    sums = np.empty((3, int(fans.max(initial=-1)) + 1), np.float64)
-    sums[:] = 0.0
-    numbers: Indices = np.empty(angles.shape, np.intp)
-    for chunk in chunks(angles.shape[1], POLYGONS_AT_ONCE):
-        fan = fans[4 * chunk.start : 4 * chunk.stop]
-        numbers[:, chunk] = fan.reshape(-1, 4).T
-        for sum_row, normal_row in zip(sums, normals, strict=True):
-            np.add.at(sum_row, fan, (angles[:, chunk] * normal_row[chunk]).T.ravel())
-    return sums, numbers
+    vectors /= sizes
+    return NodeNormals(read_only(vectors.astype(np.float32).T), read_only(numbers.T))
 
 
 def _united_with_opposite(sums: Floats, opposite: list[Indices]) -> tuple[Floats, Indices]:
@@ -211,18 +181,21 @@ def places_of_corners(coordinate_rows: Floats, node_rows: Indices) -> Indices:
 
     `coordinate_rows` is (3, nodes); `node_rows`, (4, polygons), holds the node numbers of the polygons.
     """
+    places = places_of_nodes(coordinate_rows)
+    return node_rows if places is None else places.take(node_rows)
+
+
+def places_of_nodes(coordinate_rows: Floats) -> Indices | None:
+    """A number for each node, equal for nodes at the same place; None if all their places differ."""
     if not _some_share_a_place(coordinate_rows):
-        return node_rows
+        return None
     order = np.lexsort(coordinate_rows)
     moved = np.zeros(len(order), np.bool_)
     for row in coordinate_rows:
         moved[1:] |= np.diff(row[order]) != 0
     places = np.empty(len(order), np.intp)
     places[order] = np.cumsum(moved)
-    of_corners: Indices = np.empty(node_rows.shape, np.intp)
-    for chunk in chunks(node_rows.shape[1], CORNERS_AT_ONCE):
-        of_corners[:, chunk] = places.take(node_rows[:, chunk])
-    return of_corners
+    return places
 
 
 def _some_share_a_place(coordinate_rows: Floats) -> bool:
@@ -230,15 +203,12 @@ def _some_share_a_place(coordinate_rows: Floats) -> bool:
 
     Measured: it takes a fifth of the time of sorting the nodes.
     """
-    hashes = np.empty(coordinate_rows.shape[1:], np.uint64)
-    for chunk in chunks(len(hashes), CORNERS_AT_ONCE):
-        part = np.zeros(chunk.stop - chunk.start, np.uint64)
-        for row in coordinate_rows:
-            # Add 0 to turn -0 into 0, which is the same place.
-            part ^= (row[chunk] + 0.0).view(np.uint64)
-            part *= MIXER
-            part ^= part >> np.uint64(32)
-        hashes[chunk] = part
+    hashes = np.zeros(coordinate_rows.shape[1], np.uint64)
+    for row in coordinate_rows:
+        # Add 0 to turn -0 into 0, which is the same place.
+        hashes ^= (row + 0.0).view(np.uint64)
+        hashes *= MIXER
+        hashes ^= hashes >> np.uint64(32)
     hashes.sort()
     return bool((hashes[1:] == hashes[:-1]).any())
 
@@ -254,15 +224,13 @@ def fans_of_corners(
     `places`, (4, polygons), has the place of each corner; `normals`, (3, polygons), holds unit vectors, or
     zeros. Fans are numbered from 0 in the order of their first corners.
     """
-    parents = np.empty((places.size,), np.intp if places.size < LARGE else np.int32)
-    for chunk in chunks(places.shape[1], CORNERS_AT_ONCE):
-        corners = np.arange(4 * chunk.start, 4 * chunk.stop)
-        # Unite the last two corners of a triangle, which repeats its last node.
-        corners[3::4] -= places[2, chunk] == places[3, chunk]
-        parents[4 * chunk.start : 4 * chunk.stop] = corners
+    # Corner numbers of 32 bits suffice, and take half of the memory.
+    parents: AnyArray = np.arange(places.size, dtype=np.int32)
+    # Unite the last two corners of a triangle, which repeats its last node.
+    parents[3::4] -= places[2] == places[3]
     least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
     opposite_corners = []
-    for one, other in _corners_at_shared_edges(places, part_numbers):
+    for one, other in corners_at_shared_edges(places, part_numbers):
         # Two polygons have opposite winding if both run along the shared edge in the same direction. Compare
         # the normal of the first then with the reversed normal of the second.
         opposite = places[one & 3, one >> 2] == places[other & 3, other >> 2]
@@ -279,64 +247,30 @@ def fans_of_corners(
     return fans, [fans[pairs] for pairs in opposite_corners]
 
 
-def _corners_at_shared_edges(places: Indices, part_numbers: Indices) -> Iterator[tuple[Indices, Indices]]:
+def corners_at_shared_edges(places: Indices, part_numbers: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Pairs of corners whose outgoing edges join the same two places in the same part, chunk by chunk.
 
     Where more than two polygons share an edge, each is paired with the next in the polygon table.
     """
     several_parts = bool((part_numbers != part_numbers[:1]).any())
-    for keys, edges in _edges(places):
-        # Sort the edges so that equal edges of one part become neighbors.
-        if several_parts:
-            polygons = np.repeat(np.arange(places.shape[1]), 4) if edges is None else edges >> 2
-            order = np.lexsort((part_numbers[polygons], keys))
-        else:
-            order = np.argsort(keys, kind="stable")
-        for first in range(int(np.count_nonzero(keys < 0)), len(order), CORNERS_AT_ONCE):
-            rows = order[first : first + CORNERS_AT_ONCE + 1]
-            key, corners = keys[rows], rows if edges is None else edges[rows]
-            shared = key[1:] == key[:-1]
-            if several_parts:
-                part = part_numbers[corners >> 2]
-                shared &= part[1:] == part[:-1]
-            shared = np.flatnonzero(shared)
-            yield corners[shared], corners[shared + 1]
-
-
-def _edges(places: Indices) -> Iterator[tuple[Numbers, Indices | None]]:
-    """The edges in divisions: a key that does not depend on their direction, and their first corners.
-
-    Edges without length have the key -1. The corners of a division ascend, and equal keys are in the same
-    division. The corners of a single division are None: key k belongs to corner k.
-    """
-    place_count = int(places.max(initial=-1)) + 1
-    count = min(-(-places.size // EDGES_AT_ONCE), MOST_DIVISIONS)
-    if count <= 1:
-        all_keys = np.empty((places.shape[1], 4), np.int64)
-        for chunk in chunks(len(all_keys), CORNERS_AT_ONCE):
-            start = places[:, chunk]
-            all_keys[chunk] = edge_keys(start, np.roll(start, -1, axis=0), place_count).T
-        yield all_keys.ravel(), None
-        return
-    # Number the divisions by the lower place of an edge.
-    divisions = np.empty((places.size,), np.uint8)
-    for chunk in chunks(places.shape[1], CORNERS_AT_ONCE):
+    table = np.empty((places.shape[1], 4), np.int64)
+    count = int(places.max(initial=-1)) + 1
+    for chunk in chunks(len(table), CORNERS_AT_ONCE):
         start = places[:, chunk]
-        lower = np.minimum(start, np.roll(start, -1, axis=0))
-        divisions[4 * chunk.start : 4 * chunk.stop] = (lower * count // place_count).T.ravel()
-    for number in range(count):
-        corners = np.concatenate(
-            [
-                np.flatnonzero(divisions[chunk] == number) + chunk.start
-                for chunk in chunks(len(divisions), EDGES_AT_ONCE)
-            ]
-        )
-        keys = np.empty(len(corners), np.int64)
-        for chunk in chunks(len(corners), CORNERS_AT_ONCE):
-            some = corners[chunk]
-            start, end = places[some & 3, some >> 2], places[(some + 1) & 3, some >> 2]
-            keys[chunk] = edge_keys(start, end, place_count)
-        yield keys, corners
+        table[chunk] = edge_keys(start, np.roll(start, -1, axis=0), count).T
+    # Sort the edges so that equal edges of one part become neighbors.
+    keys = table.ravel()
+    order = (
+        np.lexsort((np.repeat(part_numbers, 4), keys)) if several_parts else np.argsort(keys, kind="stable")
+    )
+    for first in range(int(np.count_nonzero(keys < 0)), len(order), CORNERS_AT_ONCE):
+        corners = order[first : first + CORNERS_AT_ONCE + 1]
+        shared = keys[corners[1:]] == keys[corners[:-1]]
+        if several_parts:
+            parts = part_numbers[corners >> 2]
+            shared &= parts[1:] == parts[:-1]
+        shared = np.flatnonzero(shared)
+        yield corners[shared], corners[shared + 1]
 
 
 def edge_keys(start: Indices, end: Indices, place_count: int) -> Numbers:
@@ -369,27 +303,10 @@ def unite(parents: Indices, one: Indices, other: Indices) -> None:
 
 def group_numbers(parents: Indices) -> Indices:
     """The group of each item; groups are numbered from 0 in the order of their roots."""
-    groups: Indices = np.empty(parents.shape, parents.dtype.type)
-    count = 0
-    for chunk in chunks(len(parents), CORNERS_AT_ONCE):
-        items = np.arange(chunk.start, chunk.stop)
-        is_root = parents[chunk] == items
-        numbers = np.cumsum(is_root)
-        groups[chunk] = numbers + (count - 1)
-        count += int(numbers[-1])
-        # A root is the lowest item of its group, so its number is already known.
-        others = items[~is_root]
-        groups[others] = groups[roots_of(parents, others)]
+    items = np.arange(len(parents), dtype=parents.dtype)
+    numbers = np.cumsum(parents == items, dtype=parents.dtype) - 1
+    groups: Indices = numbers.take(roots_of(parents, items))
     return groups
-
-
-def united_items(parents: Indices) -> Indices:
-    """The items that are not the root of their group, ascending."""
-    parts = [
-        np.flatnonzero(parents[chunk] != np.arange(chunk.start, chunk.stop)) + chunk.start
-        for chunk in chunks(len(parents), CORNERS_AT_ONCE)
-    ]
-    return np.concatenate([np.empty(0, np.intp), *parts])
 
 
 def roots_of(parents: Indices, items: Indices) -> Indices:

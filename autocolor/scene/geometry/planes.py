@@ -31,7 +31,7 @@ import numpy as np
 from autocolor import arrays
 from autocolor.arrays import Booleans, Floats, Indices, LowBits, chunks, cross, dot
 from autocolor.immutable import Immutable
-from autocolor.scene.geometry.normals import edge_keys, places_of_corners, roots_of, unite, united_items
+from autocolor.scene.geometry.normals import corners_at_shared_edges, places_of_corners, roots_of, unite
 
 TOLERANCE: Final = 3e-6
 """Assumed: polygons lie in one plane if no corner is farther from it than this fraction of their largest
@@ -186,7 +186,7 @@ def _groups(mesh: Polygons) -> tuple[Indices, Indices]:
                 unite(parents, some[widest], some[members])
                 # The widest polygon alone stands for its group in the other grids.
                 left[some[members[members != widest]]] = False
-    united = united_items(parents)
+    united = np.flatnonzero(parents != np.arange(len(parents)))
     roots = roots_of(parents, united)
     firsts = np.unique(roots)
     polygons, roots = np.concatenate([firsts, united]), np.concatenate([firsts, roots])
@@ -252,20 +252,15 @@ def _may_overlap(places: Indices, groups: Indices, turned: Booleans) -> Booleans
     A patch is simple if at most two polygons meet at each edge, one on either side. `places` is as from
     `places_of_corners`. Polygons on the same side of an edge overlap; such an edge joins no polygons.
     """
-    start, end = places, np.roll(places, -1, axis=0)
-    keys = edge_keys(start, end, int(places.max(initial=0)) + 1).T.ravel()
-    forward = ((start < end) ^ turned).T.ravel()
-    edges = np.flatnonzero(keys >= 0)
-    # Edges are in the order of the groups; after a stable sort, so are equal edges.
-    edges = edges[np.argsort(keys[edges], kind="stable")]
-    keys, forward, polygon = keys[edges], forward[edges], edges >> 2
-    shared = (keys[1:] == keys[:-1]) & (groups[polygon[1:]] == groups[polygon[:-1]])
-    folded = shared & (forward[1:] == forward[:-1])
-    folded[1:] |= shared[1:] & shared[:-1]
+    forward = ((places < np.roll(places, -1, axis=0)) ^ turned).T.ravel()
+    none = np.empty((2, 0), np.intp)
+    one, other = np.concatenate([none, *corners_at_shared_edges(places, groups)], axis=1)
+    folded = forward[one] == forward[other]
+    # A third polygon at an edge is paired with the second.
+    folded[1:] |= one[1:] == other[:-1]
     # Unite polygons across their edges, unless they are folded there.
     parents = np.arange(len(groups))
-    joined = shared & ~folded
-    unite(parents, polygon[:-1][joined], polygon[1:][joined])
+    unite(parents, one[~folded] >> 2, other[~folded] >> 2)
     several = np.bincount(groups[parents == np.arange(len(groups))], minlength=1) > 1
-    several[groups[polygon[1:][folded]]] = True
+    several[groups[other[folded] >> 2]] = True
     return several[groups]

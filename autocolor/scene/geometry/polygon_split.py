@@ -8,8 +8,6 @@ between the heights of its corners and crossings, with new nodes where slabs end
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
-from functools import cached_property
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
@@ -24,16 +22,13 @@ MOST_CORNERS: Final = 1000
 """Limit: corners of one polygon."""
 
 MOST_CLIPPING: Final = 20_000_000
-"""Limit: corners of all clipped polygons; they take up to 30 microseconds each."""
+"""Limit: corners of all clipped polygons; each takes a few microseconds, in large polygons up to 100."""
 
 MOST_SLABS: Final = 100_000
 """Limit: heights of corners and crossings times sides, in a polygon whose sides cross."""
 
-FEW: Final = 30
-"""Measured: the points at which arrays become faster."""
-
-Point = tuple[float, float]
-
+PAIRS_AT_ONCE: Final = 1 << 21
+"""Pairs of a corner and a point that are worked on at once."""
 
 TOUCHING: Final = 1e-9
 """Assumed: sides that meet within this fraction of their lengths from an end touch and do not cross. Points
@@ -43,7 +38,6 @@ CANCELS: Final = 1e-6
 """Assumed: twice the area below which the halves of a polygon of size 1 cancel."""
 
 AT_ONCE: Final = 1 << 14
-
 
 NONE: Final = read_only(np.empty(0, np.intp))
 
@@ -94,22 +88,15 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> Pi
     polygons with reflex corners.
     """
     starts = np.cumsum(counts) - counts
-    is_small = (counts == 3) | (counts == 4)
-    for sides in (3, 4):
-        if not len(counts) or not (counts == sides).all():
-            continue
-        # Measured: if all polygons have the same number of sides, this takes half the time.
-        by_column = np.empty((4, len(counts)), np.intp)
-        by_column[:sides] = corners.reshape(-1, sides).T
-        by_column[3] = by_column[sides - 1]
-        if sides == 4:
-            is_small = ~crossed_quads(coordinates, by_column.T)
-        if is_small.all():
-            return Pieces(by_column.T, np.arange(len(counts)))
-    quads = np.flatnonzero(is_small & (counts == 4))
-    is_small[quads] = ~crossed_quads(coordinates, corners[starts[quads, None] + np.arange(4)])
+    is_small, quads = (counts == 3) | (counts == 4), np.flatnonzero(counts == 4)
+    of_quads = corners[starts[quads] + np.arange(4)[:, None]].T
+    is_small[quads] = ~crossed_quads(coordinates, of_quads)
+    if len(quads) == len(counts) and is_small.all():
+        return Pieces(of_quads, quads)
     small = np.flatnonzero(is_small)
-    pieces = [corners[starts[small, None] + np.minimum(np.arange(4), counts[small, None] - 1)]]
+    pieces = [corners[starts[small] + np.minimum(np.arange(4)[:, None], counts[small] - 1)].T]
+    if is_small.all():
+        return Pieces(pieces[0], small)
     owners, crossed = [small], [NONE]
     added: list[tuple[int, int, float]] = []
     large = np.flatnonzero((counts > 3) & ~is_small)
@@ -126,16 +113,17 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> Pi
         owners.append(np.repeat(rows[convex], len(fan)))
         clipping += int((~convex & ~crosses).sum()) * count
         _check_clipping(clipping, count)
-        for row in np.flatnonzero(~convex).tolist():
-            if crosses[row]:
-                clipped = even_odd_slabs(flat[row], nodes[row].tolist(), len(coordinates), added)
-                clipping += clipped.size
-                _check_clipping(clipping, count)
-                pieces.append(clipped)
-            else:
-                clipped = np.array(clipped_ears([(x, y) for x, y in flat[row].tolist()]))
-                pieces.append(nodes[row][clipped])
-            owners.append(np.repeat(rows[row], len(clipped)))
+        for row in np.flatnonzero(crosses).tolist():
+            slabs = even_odd_slabs(flat[row], nodes[row].tolist(), len(coordinates), added)
+            clipping += slabs.size
+            _check_clipping(clipping, count)
+            pieces.append(slabs)
+            owners.append(np.repeat(rows[row], len(slabs)))
+        reflex = np.flatnonzero(~convex & ~crosses)
+        for chunk in chunks(len(reflex), max(PAIRS_AT_ONCE // count**2, 1)):
+            ears = clipped_ears(flat[reflex[chunk]]).reshape(len(reflex[chunk]), -1)
+            pieces.append(np.take_along_axis(nodes[reflex[chunk]], ears, axis=1).reshape(-1, 4))
+            owners.append(np.repeat(rows[reflex[chunk]], count - 3))
     owner = np.concatenate(owners)
     order = np.argsort(owner, kind="stable")
     table = np.array(added, np.float64).reshape(-1, 3).T
@@ -275,92 +263,62 @@ def _in_their_planes(points: Floats) -> tuple[Floats, Booleans]:
     return flat, np.all(turns >= -1e-12, axis=1)
 
 
-def clipped_ears(points: list[Point]) -> list[tuple[int, int, int, int]]:
-    """The pieces of one counterclockwise polygon by ear clipping, as indices of its points.
+def clipped_ears(points: Floats) -> Indices:
+    """The pieces of counterclockwise polygons, (n, corners, 2), by ear clipping: (n, corners - 3, 4) corners.
 
-    All but the last are triangles. A simple polygon always has an ear. If a self-intersecting polygon has no
-    ear left, its remaining corners are clipped in order.
-
-    A corner that is no ear is tested again only after a neighbor was clipped, or the last point in its
-    triangle. Measured: a spiral of 1,000 corners takes 20 ms, and 1.2 s if all corners are tested in turn.
+    All pieces but the last of a polygon are triangles. A simple polygon always has an ear. If a
+    self-intersecting polygon has no ear left, its remaining corners are clipped in order.
     """
-    count = len(points)
-    before, after = [count - 1, *range(count - 1)], [*range(1, count), 0]
-    in_triangle = PointsInTriangles(points)
-    is_left = [True] * count
-    blockers: list[list[int] | None] = [None] * count
-    blocked: list[list[int]] = [[] for _ in points]
-    untested = list(range(count))
-    pieces: list[tuple[int, int, int, int]] = []
-    here = 0
-    crosses = False
-    while len(pieces) < count - 4:
+    polygons, count, _ = points.shape
+    rows, corners = np.arange(polygons), np.arange(count)
+    before, after = (np.tile(np.roll(corners, step), (polygons, 1)) for step in (1, -1))
+    is_left = np.ones((polygons, count), np.bool_)
+    # A corner is an ear if no point is in its triangle.
+    inside = np.stack(
+        [_in_triangles(points, corner - 1, corner, corner + 1 - count) for corner in corners], 1
+    )
+    pieces = np.empty((polygons, count - 3, 4), np.intp)
+    here, crosses = np.zeros(polygons, np.intp), np.zeros(polygons, np.bool_)
+    counts = inside.sum(axis=2)
+    for step in range(count - 4):
         # Find the next ear.
-        while untested and not crosses:
-            corner = untested.pop(bisect_left(untested, here) % len(untested))
-            inside = blockers[corner]
-            if inside is None:
-                inside = blockers[corner] = in_triangle(before[corner], corner, after[corner])
-            while inside and not is_left[inside[-1]]:
-                inside.pop()
-            if not inside:
-                here = corner
-                break
-            blocked[inside[-1]].append(corner)
-        else:
-            crosses = True
-        # Clip it, and test again the corners for which this matters.
-        one, other = before[here], after[here]
-        pieces.append((one, here, other, other))
-        is_left[here] = False
-        after[one], before[other] = other, one
-        blockers[one] = blockers[other] = None
-        for corner in (one, other, *blocked[here]):
-            at = bisect_left(untested, corner)
-            if is_left[corner] and untested[at : at + 1] != [corner]:
-                untested.insert(at, corner)
+        is_ear = is_left & (counts == 0)
+        crosses |= ~is_ear.any(axis=1)
+        distances = np.where(is_ear, (corners - here[:, None]) % count, count)
+        ear = np.where(crosses, here, distances.argmin(axis=1))
+        # Clip it, and test its neighbors again.
+        one, other = before[rows, ear], after[rows, ear]
+        pieces[:, step] = np.stack([one, ear, other, other], axis=1)
+        is_left[rows, ear] = False
+        after[rows, one], before[rows, other] = other, one
+        counts -= inside[rows, :, ear]
+        inside[rows, :, ear] = False
+        for corner in (one, other):
+            tested = _in_triangles(points, before[rows, corner], corner, after[rows, corner]) & is_left
+            inside[rows, corner], counts[rows, corner] = tested, tested.sum(axis=1)
         # Continue after the next corner: clipping adjacent ears would make slivers.
-        here = after[other]
-    a, b, c, d = (corner for corner in range(count) if is_left[corner])
-    return [*pieces, (a, b, c, d)]
+        here = after[rows, other]
+    pieces[:, -1] = np.nonzero(is_left)[1].reshape(-1, 4)
+    return pieces
 
 
-class PointsInTriangles:
-    """Finds which points of a polygon are in a triangle of three of them, or on its border."""
+def _in_triangles(points: Floats, before: Any, here: Any, after: Any) -> Booleans:
+    """Which points of each polygon, (n, corners, 2), are in the triangle of three: (n, corners).
 
-    def __init__(self, points: list[Point]) -> None:
-        self.points = points
-        self.rows = sorted(range(len(points)), key=points.__getitem__)
-        self.sorted_x = [points[row][0] for row in self.rows]
-
-    @cached_property
-    def columns(self) -> Any:
-        """The points in the order of their rows, (2, points)."""
-        return np.array([self.points[row] for row in self.rows]).T
-
-    def __call__(self, before: int, here: int, after: int) -> list[int]:
-        """The points in the triangle except its corners; the corner `here` if it is reflex or straight."""
-        a, b, c = corners = [self.points[row] for row in (before, here, after)]
-        if _turn(a, b, c) <= 0:
-            return [here]
-        first = bisect_left(self.sorted_x, min(corners)[0])
-        last = bisect_right(self.sorted_x, max(corners)[0])
-        rows = self.rows[first:last]
-        if last - first > FEW:
-            p = self.columns[:, first:last]
-            is_inside = (_turn(a, b, p) >= 0) & (_turn(b, c, p) >= 0) & (_turn(c, a, p) >= 0)
-            inside = (rows[at] for at in np.flatnonzero(is_inside).tolist())
-            return [row for row in inside if self.points[row] not in corners]
-        return [
-            row
-            for row in rows
-            if (p := self.points[row]) not in corners
-            and _turn(a, b, p) >= 0
-            and _turn(b, c, p) >= 0
-            and _turn(c, a, p) >= 0
-        ]
+    Points on its border are in it, too, but not its corners; `here` is in it if it is reflex or straight.
+    """
+    rows = np.arange(len(points))
+    p = points.view(np.complex128)[..., 0]
+    a, b, c = corners = [p[rows, corner, None] for corner in (before, here, after)]
+    inside = (_turns(a, b, p) >= 0) & (_turns(b, c, p) >= 0) & (_turns(c, a, p) >= 0)
+    for corner in corners:
+        inside &= p != corner
+    inside[rows, here] = _turns(a, b, c)[:, 0] <= 0
+    return inside
 
 
-def _turn(a: Point, b: Point, c: Any) -> Any:
-    """Twice the area of a triangle; c may be rows of x and y."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+def _turns(a: Any, b: Any, c: Any) -> Floats:
+    """Twice the areas of triangles, whose corners are complex numbers."""
+    one, other = b - a, c - a
+    turns: Floats = one.real * other.imag - one.imag * other.real
+    return turns

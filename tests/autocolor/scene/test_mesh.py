@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 
 from autocolor import InputError, Mesh, Scene, scene_of
-from autocolor.scene import mesh as mesh_module
 from autocolor.scene.columns import Tier
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scalar import MeshScalar
@@ -129,14 +128,10 @@ def test_a_mesh_of_tables_copies_nothing_and_has_the_given_normals_and_planes(me
     assert (computed.shared_planes is None) == (mesh.shared_planes is None)
 
 
-@pytest.mark.parametrize("at_once", [1, 3, 1000])
-def test_edges_are_counted_alike_in_chunks_of_any_size(at_once: int) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(mesh_module, "POLYGONS_AT_ONCE", at_once)
-        assert cube().edge_count == 12
-        assert grid(3, 2, (0, 0, 0), (3, 0, 0), (0, 2, 0)).edge_count == 17
-        assert mesh_of(node_numbers=np.array([[0, 1, 2], [2, 1, 0]]), part_numbers=[0, 0]).edge_count == 3
-        assert mesh_of(node_numbers=np.empty((0, 4), np.intp), part_numbers=[]).edge_count == 0
+def test_edges_are_counted_once() -> None:
+    assert cube().edge_count == 12
+    assert grid(3, 2, (0, 0, 0), (3, 0, 0), (0, 2, 0)).edge_count == 17
+    assert mesh_of(node_numbers=np.array([[0, 1, 2], [2, 1, 0]]), part_numbers=[0, 0]).edge_count == 3
 
 
 VALUES = np.array([1.0, np.nan, 3.0, 4.0])

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,15 +12,11 @@ from autocolor import Mesh
 from autocolor.scene.mesh_faults import (
     KINDS,
     Hole,
-    QuadShapes,
     edge_faults,
     fault_scalar,
     holes_of,
     mesh_faults,
-    nodes_at_one_place,
-    polygon_shapes,
     quad_shapes,
-    repeated_polygons,
 )
 from tests.small import cube
 
@@ -88,31 +85,26 @@ def test_the_edges_agree_with_a_count_in_a_table(rows: list[list[int]]) -> None:
             directed[start, end] += 1
             owners[frozenset((start, end))].append(number)
     table = np.array([[*row, *row[-1:]][:4] for row in rows])
-    found = edge_faults(table, 7)
-    for edges, of_polygons, expected in (
-        (found.borders, found.border_polygons, {edge for edge in owners if len(owners[edge]) == 1}),
-        (found.crowded, found.crowded_polygons, {edge for edge in owners if len(owners[edge]) > 2}),
-        (
-            found.turned,
-            found.turned_polygons,
-            {edge for edge in owners if len(owners[edge]) == 2 and directed[min(edge), max(edge)] != 1},
-        ),
-    ):
-        assert sorted(map(sorted, edges.tolist())) == sorted(map(sorted, expected))
-        assert of_polygons.tolist() == sorted({number for edge in expected for number in owners[edge]})
+    expected = {
+        "border": {edge for edge in owners if len(owners[edge]) == 1},
+        "turned": {edge for edge in owners if len(owners[edge]) == 2 and directed[min(edge), max(edge)] != 1},
+        "crowded": {edge for edge in owners if len(owners[edge]) > 2},
+    }
+    for fault in edge_faults(Mesh(np.zeros((7, 3)), table)):
+        edges = expected.pop(fault.kind)
+        assert sorted(map(sorted, fault.rows.tolist())) == sorted(map(sorted, edges))
+        assert fault.polygons.tolist() == sorted({number for edge in edges for number in owners[edge]})
+    assert not expected
 
 
 def test_a_box_without_two_of_its_sides_has_two_holes() -> None:
-    mesh = cube()
-    box = mesh.node_numbers
-    opposite = next(row for row in range(1, 6) if not set(box[row]) & set(box[0]))
-    kept = np.delete(box, [0, opposite], axis=0)
-    holes = holes_of(mesh.coordinates, edge_faults(kept, 8).borders)
-    assert [(hole.edges, hole.is_closed) for hole in holes] == [(4, True), (4, True)]
-    side = np.linalg.norm(mesh.coordinates[box[0, 0]] - mesh.coordinates[box[0, 1]])
-    assert [hole.length for hole in holes] == pytest.approx([4 * side] * 2)
-    for hole, row in zip(sorted(holes, key=lambda each: each.center), (0, opposite), strict=False):
-        assert hole.node in {*box[0].tolist(), *box[opposite].tolist()}, row
+    box = cube()
+    sides = box.node_numbers.tolist()
+    opposite = next(side for side in sides if not {*side} & {*sides[0]})
+    rest = [side for side in sides if side not in (sides[0], opposite)]
+    border, *_ = edge_faults(Mesh(box.coordinates, np.array(rest)))
+    assert [(hole.edges, hole.length, hole.is_closed) for hole in border.holes] == [(4, 4.0, True)] * 2
+    assert {hole.node for hole in border.holes} == {min(sides[0]), min(opposite)}
 
 
 def test_holes_that_share_a_node_are_one_branching_hole_and_longer_holes_come_first() -> None:
@@ -127,41 +119,52 @@ def test_holes_that_share_a_node_are_one_branching_hole_and_longer_holes_come_fi
 
 
 @pytest.mark.parametrize(
-    ("corners", "shapes"),
+    ("corners", "warped", "concave", "crossed"),
     [
-        ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], QuadShapes(1, 0, 0, 0)),
-        ([[0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]], QuadShapes(1, 1, 0, 0)),
-        ([[0, 0, 0], [2, 0, 0], [0.5, 0.5, 0], [0, 2, 0]], QuadShapes(1, 0, 1, 0)),
-        ([[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]], QuadShapes(1, 0, 0, 1)),
-        ([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 1, 0]], QuadShapes(1, 0, 0, 1)),
+        ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], 0, 0, 0),
+        ([[0, 0, 0], [1, 0, 0], [1, 1, 0.5], [0, 1, 0]], 1, 0, 0),
+        ([[0, 0, 0], [2, 0, 0], [0.5, 0.5, 0], [0, 2, 0]], 0, 1, 0),
+        ([[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]], 0, 0, 1),
+        ([[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 1, 0]], 0, 0, 1),
     ],
     ids=["square", "warped", "concave", "bow-tie that cancels", "bow-tie"],
 )
 @pytest.mark.parametrize("scale", [1e-20, 1.0, 1e20])
 def test_the_shape_of_a_quad_does_not_depend_on_its_size(
-    corners: list[list[float]], shapes: QuadShapes, scale: float
+    corners: list[list[float]], warped: int, concave: int, crossed: int, scale: float
 ) -> None:
     for first in range(4):
         quad = np.roll(np.arange(4), first)
-        mesh = Mesh(
-            np.array(corners) * scale, np.array([quad, quad[[0, 1, 2, 2]]]), np.zeros(2, np.intp), ("a",)
-        )
-        assert quad_shapes(mesh) == shapes
+        mesh = Mesh(np.array(corners) * scale, np.array([quad, quad[[0, 1, 2, 2]]]))
+        counts = {"quads": 1, "warped": warped, "concave": concave, "crossed": crossed}
+        assert quad_shapes(mesh) == counts
 
 
-def test_polygons_without_area_are_no_quads_of_another_shape() -> None:
-    places = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0.0]])
-    found = polygon_shapes(places, np.array([[0, 1, 2, 3], [0, 1, 2, 2], [0, 0, 0, 0], [0, 1, 4, 4]]))
-    assert found.without_area.tolist() == [0, 1, 2]
-    assert len(found.warped) == len(found.concave) == len(found.crossed) == 0
+PLACES = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [0, 1, 0.0]]
+SIGNED = [[0.0, 0, 0], [1, 0, 0], [-0.0, 0, 0], [0, 0, 0], [0, 1, 0]]
 
 
-def test_polygons_are_the_same_in_any_order_of_their_nodes() -> None:
-    table = np.array([[0, 1, 2, 3], [0, 1, 2, 2], [3, 2, 1, 0], [0, 1, 3, 3], [2, 0, 1, 1]])
-    assert repeated_polygons(table).tolist() == [0, 1, 2, 4]
-
-
-def test_only_nodes_that_are_used_count_and_zero_has_no_sign() -> None:
-    places = np.array([[0.0, 0, 0], [1, 0, 0], [-0.0, 0, 0], [0, 0, 0], [0, 1, 0]])
-    assert nodes_at_one_place(places, np.array([[0, 1, 4, 4]])).tolist() == []
-    assert nodes_at_one_place(places, np.array([[0, 1, 4, 4], [2, 1, 4, 4]])).tolist() == [0, 2]
+@pytest.mark.parametrize(
+    ("nodes", "polygons", "kind", "rows"),
+    [
+        (PLACES, [[0, 1, 2, 3], [0, 1, 2, 2], [0, 0, 0, 0], [0, 1, 4, 4]], "without area", [0, 1, 2]),
+        (PLACES, [[0, 1, 2, 3], [0, 1, 2, 2], [0, 0, 0, 0], [0, 1, 4, 4]], "warped", []),
+        (PLACES, [[0, 1, 2, 3]], "crossed", []),
+        # Polygons are the same in any order of their nodes.
+        (
+            PLACES,
+            [[0, 1, 2, 3], [0, 1, 2, 2], [3, 2, 1, 0], [0, 1, 3, 3], [2, 0, 1, 1]],
+            "repeated",
+            [0, 1, 2, 4],
+        ),
+        (PLACES, [[0, 1, 4, 4], [0, 1, 4, 4]], "repeated", [0, 1]),
+        # Only nodes that are used count, and zero has no sign.
+        (SIGNED, [[0, 1, 4, 4]], "unwelded", []),
+        (SIGNED, [[0, 1, 4, 4], [2, 1, 4, 4]], "unwelded", [0, 2]),
+        (SIGNED, np.empty((0, 4), np.intp), "unwelded", []),
+        (SIGNED, np.empty((0, 4), np.intp), "unused", [0, 1, 2, 3, 4]),
+    ],
+)
+def test_the_rows_of_a_fault_are_these(nodes: Any, polygons: Any, kind: str, rows: list[int]) -> None:
+    faults = {fault.kind: fault.rows.tolist() for fault in mesh_faults(Mesh(nodes, polygons))}
+    assert faults.get(kind, []) == rows

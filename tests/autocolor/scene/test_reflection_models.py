@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from autocolor.scene.reflection_models import (
     ReflectionModel,
     SpecularGrowth,
 )
-from autocolor.testing import angle_curves, growths, numbers
+from autocolor.testing import growths, numbers
 from tests.autocolor.twins.light import specular_factor, specular_growth
 from tests.autocolor.twins.point import dot, plus
 from tests.closeness import all_close
@@ -177,11 +176,6 @@ def schlick(f0: float, cosines: np.ndarray[Any, Any] = COSINES) -> np.ndarray[An
     return (f0 + (1 - f0) * (1 - cosines.astype(np.float64)) ** 5) / f0
 
 
-@pytest.mark.parametrize("f0", [0.001, 0.02, 0.04, 0.17, 0.5, 0.95, 1.0])
-def test_a_given_reflectance_is_schlicks_curve(f0: float) -> None:
-    assert all_close(factor(SpecularGrowth(base_reflectance=f0)), schlick(f0), rel=1e-5)
-
-
 @pytest.mark.parametrize(
     ("index", "f0"),
     [(1.07, 0.0011435), (4 / 3, 1 / 49), (1.5, 0.04), (2.42, 0.172398), (3.0, 0.25), (9, 0.64)],
@@ -191,19 +185,6 @@ def test_a_refractive_index_is_schlicks_curve_of_its_reflectance(index: float, f
     assert growth.normal_reflectance == pytest.approx(f0, rel=1e-4)
     assert growth.normal_reflectance is not None
     assert all_close(factor(growth), schlick(growth.normal_reflectance), rel=1e-5)
-
-
-@given(angle_curves())
-def test_a_curve_is_met_at_its_points_and_is_linear_in_the_angle_between_them(curve: AngleCurve) -> None:
-    growth = SpecularGrowth(fresnel_curve=curve)
-    angles, shares = zip(*curve, strict=True)
-    expected = np.interp(np.degrees(np.arccos(COSINES.astype(np.float64))), angles, shares) / shares[0]
-    assert all_close(factor(growth), expected, rel=1e-5, abs=1e-6)
-    for (left, low), (right, high) in pairwise(curve):
-        middle = np.float32(math.cos(math.radians((left + right) / 2)))
-        at = math.degrees(math.acos(float(middle)))
-        share = low + (high - low) * (at - left) / (right - left)
-        assert factor(growth, np.array([middle]))[0] == pytest.approx(share / curve[0][1], rel=1e-5)
 
 
 @given(growths(), st.lists(numbers(-2, 2), min_size=1))

@@ -28,13 +28,10 @@ from autocolor.scene.lights import HalfSpace
 from autocolor.scene.row_kinds import (
     MOST_NAMED_ROWS,
     OneRowOf,
-    RangesByName,
     Reference,
-    References,
     RowList,
     TableRows,
     nested,
-    references_of,
     table_row,
 )
 from tests.tables import call, refused
@@ -171,22 +168,6 @@ test_a_row_inside_a_row_is_refused_with_the_keys_that_lead_there = refused(
 def test_a_table_of_more_than_a_million_rows_is_refused_at_once() -> None:
     with pytest.raises(InputError, match=r"^boxes must be a list of Box rows, not \("):
         Stack((Box("a"),) * 1_000_001)
-
-
-def test_names_that_refer_to_other_rows_are_found_and_words_are_none() -> None:
-    assert Reference("surfaces").names_in("body") == ["body"]
-    assert References("lights").names_in(("key", "rim")) == ["key", "rim"]
-    assert Reference("lights", "eye").names_in("eye") == []
-    assert Reference("lights", "eye").names_in("key") == ["key"]
-    ranges = RangesByName("surfaces", "object", "auto")
-    assert list(ranges.names_in("auto")) == []
-    assert list(ranges.names_in((("body", (0, 1)), ("object", (0, 1))))) == ["body"]
-
-
-def test_columns_that_refer_to_other_tables_are_known_also_inside_others() -> None:
-    assert [*references_of(Part)] == ["surface"]
-    assert references_of(Surface) == {}
-    assert references_of(Light)["only_parts"].field == "links"
 
 
 def test_a_missing_misspelt_or_wrong_argument_is_found_by_type_checkers_and_at_run_time() -> None:

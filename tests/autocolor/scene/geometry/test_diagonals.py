@@ -16,7 +16,7 @@ from autocolor.scene.geometry.diagonals import NO_DIAGONAL, quad_diagonals
 from autocolor.scene.geometry.polygon_split import clipped_ears, split_polygons
 from autocolor.testing import meshes
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.small import grid, sphere
+from tests.small import grid
 
 DART = [(0.0, 0.0, 0.0), (2.0, 5.0, 0.0), (4.0, 0.0, 0.0), (2.0, 1.0, 0.0)]
 SQUARE = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)]
@@ -90,12 +90,6 @@ def test_diagonals_do_not_depend_on_the_chunks(mesh: Mesh) -> None:
     assert in_chunks.warps.tolist() == mesh.diagonals.warps.tolist()
 
 
-def test_diagonals_are_shared_with_a_mesh_of_other_scalars() -> None:
-    mesh = sphere()
-    diagonals = mesh.diagonals
-    assert mesh.with_scalars().diagonals is diagonals
-
-
 def area(points: np.ndarray, rows: object) -> float:
     """Twice the signed area of a polygon in the plane z = 0."""
     corners = points[np.asarray(rows)]
@@ -138,23 +132,25 @@ def test_a_star_shaped_polygon_is_covered_once_in_any_plane(
     assert sum(areas) == pytest.approx(area(points, range(len(radii))))
 
 
-@pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0), (1, 0, 2)])
-def test_a_comb_of_many_short_teeth_is_covered_once(axes: tuple[int, int, int]) -> None:
-    # Many points are within the width of an ear, and the ears have small areas.
-    teeth = [(number / 10, 0.5 if number % 2 else 0.1) for number in range(101)]
-    outline = np.array([(0.0, 0.0), (10.0, 0.0), *reversed(teeth)])
-    points = np.column_stack([outline, np.zeros(len(outline))])
-    pieces, *_ = split_polygons(points[:, axes], np.arange(len(points)), np.array([len(points)]))
-    areas = [area(points, piece) for piece in pieces]
-    assert min(areas) >= -1e-9
-    assert sum(areas) == pytest.approx(area(points, range(len(points))))
+def test_polygons_of_a_count_are_clipped_alike_however_many_are_worked_on_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    random = np.random.default_rng(3)
+    radii, turns = random.uniform(0.3, 1, (7, 9)), np.arange(9) * 2 * math.pi / 9
+    points = np.stack([radii * np.cos(turns), radii * np.sin(turns), 0 * radii], axis=2).reshape(-1, 3)
+    polygons = (points, np.arange(63), np.full(7, 9))
+    at_once = split_polygons(*polygons)
+    monkeypatch.setattr(polygon_split, "PAIRS_AT_ONCE", 170)
+    in_chunks = split_polygons(*polygons)
+    assert in_chunks.corners.tolist() == at_once.corners.tolist()
+    assert in_chunks.owners.tolist() == at_once.owners.tolist()
 
 
 @given(st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=5, max_size=30))
 def test_clipping_ends_whatever_crosses(points: list[tuple[float, float]]) -> None:
-    pieces = clipped_ears(points)
+    (pieces,) = clipped_ears(np.array([points], np.float64))
     assert len(pieces) == len(points) - 3
-    assert {row for piece in pieces for row in piece} == set(range(len(points)))
+    assert set(pieces.ravel().tolist()) == set(range(len(points)))
 
 
 def test_clipping_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,14 +13,13 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh
 from autocolor.arrays import Singles
-from autocolor.scene.geometry import curvature
 from autocolor.scene.geometry import normals as normals_module
 from autocolor.scene.geometry.normals import (
     node_normals,
     polygon_normals,
 )
 from autocolor.testing import meshes
-from tests.small import cube, grid, sphere, wall
+from tests.small import cube, grid, sphere
 from tests.tables import first
 
 EPSILON = float(np.finfo(np.float32).eps)
@@ -258,12 +257,6 @@ def test_both_curvatures_of_a_torus_are_those_of_the_formula(tube: float, sides:
     assert mesh.curvatures.gaussian == pytest.approx(gaussian, abs=0.005 * np.abs(gaussian).max())
 
 
-def test_a_flat_surface_has_no_curvature() -> None:
-    for mesh in (cube(), wall(5, 3), grid(4, 4, (1.0, 2.0, 3.0), (1.0, 5.0, 2.0), (-3.0, 0.0, 1.0))):
-        assert mesh.curvatures.mean == pytest.approx(0, abs=1e-6)
-        assert mesh.curvatures.gaussian == pytest.approx(0, abs=1e-9)
-
-
 @pytest.mark.parametrize("bands", [1, 5])
 def test_a_cylinder_bends_one_way_up_to_its_rims(bands: int) -> None:
     count, radius = 48, 3.0
@@ -298,25 +291,6 @@ def test_a_crease_has_no_curvature_across_it() -> None:
     mesh = heights(20, 6, shape, 0.8)
     assert len(mesh.normals.vectors) > len(mesh.coordinates)
     assert mesh.curvatures.mean == pytest.approx(0.25, rel=0.05)
-
-
-def test_nodes_that_are_repeated_are_as_those_that_are_shared() -> None:
-    shared = sphere(30, 16)
-    repeated = Mesh(
-        shared.coordinates[shared.node_numbers].reshape(-1, 3),
-        np.arange(4 * len(shared.node_numbers)).reshape(-1, 4),
-        part_names=("sphere",),
-    )
-    of_corners = [mesh.curvatures.mean[mesh.normals.numbers] for mesh in (shared, repeated)]
-    assert of_corners[0] == pytest.approx(of_corners[1], rel=1e-6)
-
-
-def test_curvatures_do_not_depend_on_the_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
-    in_one = torus(12, 8).curvatures
-    monkeypatch.setattr(curvature, "CORNERS_AT_ONCE", 7)
-    in_many = torus(12, 8).curvatures
-    assert in_one.mean == pytest.approx(in_many.mean, rel=1e-12)
-    assert in_one.gaussian == pytest.approx(in_many.gaussian, rel=1e-12, abs=1e-12)
 
 
 @given(meshes())
