@@ -115,12 +115,12 @@ def _named(rows: Iterable[tuple[int, object]]) -> tuple[Variant, ...]:
     for number, row in given:
         try:
             variant = _variant(row)
+            other = numbers.setdefault(variant.name.casefold(), number)
+            if other != number and variant.name != UNNAMED:
+                text = f"not {shown(variant.name)} as in row {other}; rename a variant"
+                raise UsageError(f"a name must be unique, {text}")
         except UsageError as problem:
             raise UsageError(f"row {number}: {problem}") from None
-        other = numbers.setdefault(variant.name.casefold(), number)
-        if other != number and variant.name != UNNAMED:
-            text = f"a name must be unique, not {shown(variant.name)} as in row {other}; rename a variant"
-            raise UsageError(f"row {number}: {text}")
         variants.append(variant)
     taken = dict.fromkeys(numbers.keys() - {UNNAMED}, 1)
     varying = _varying([variant.settings for variant in variants])
@@ -164,14 +164,11 @@ def _varying(settings: Sequence[Mapping[str, object]]) -> dict[str, int]:
 
     All keys if there are none.
     """
-    values: dict[str, set[str]] = {}
-    counts: Counter[str] = Counter()
-    for row in settings:
-        counts.update(row.keys())
-        for key, value in row.items():
-            values.setdefault(key, set()).add(repr(value))
-    varying = [key for key in values if len(values[key]) > 1 or counts[key] < len(settings)]
-    return {key: place for place, key in enumerate(varying or values)}
+    counts = Counter((key, repr(value)) for row in settings for key, value in row.items())
+    keys = dict.fromkeys(key for key, _ in counts)
+    same = {key for (key, _), count in counts.items() if count == len(settings)}
+    varying = [key for key in keys if key not in same] or keys
+    return {key: place for place, key in enumerate(varying)}
 
 
 def _label(settings: Mapping[str, object], varying: Mapping[str, int], number: int) -> str:
@@ -223,6 +220,10 @@ class Result(NamedTuple):
     seconds: float = 0.0
     tier: Tier | None = None
     was_made: bool = True
+
+    def __reduce__(self) -> tuple[type[Result], tuple[object, ...]]:
+        # A read-only mapping cannot be pickled.
+        return Result, (self.name, dict(self.settings), *self[2:])
 
 
 TABLE_BEGINS: Final = b"name,path,"
