@@ -426,11 +426,10 @@ def checked_batch(
     drawing = _drawing(picture, form, thumbnail, options)
     paths = () if output is None else paths_of(output, scene, rows)
     if not (options.get("overwrite") or options.get("resume")):
-        existing = [path for path in paths if os.path.lexists(path)]
-        if existing:
-            others = f" and {len(existing) - 1:,} more, which exist" if existing[1:] else ", which exists"
+        existing = next(filter(os.path.lexists, paths), None)
+        if existing is not None:
             raise OutputError(
-                f"the pictures of a batch must be new files, not {brief(existing[0])}{others}; resume the"
+                f"the pictures of a batch must be new files, not {brief(existing)}, which exists; resume the"
                 " batch with --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
             )
     base = "" if form == ARRAY else base_mark(scene, picture, drawing[:5])
@@ -542,8 +541,7 @@ def batch(
 
 def _is_of_batch(path: str | PathLike[str]) -> bool:
     """Whether a file is the sheet or the table of a batch."""
-    if not fspath(path).lower().endswith(".csv"):
-        return mark_in(fspath(path), "png") == SHEET_MARK
     with suppress(OSError), open(path, "rb") as file:
-        return file.read(len(TABLE_BEGINS)) == TABLE_BEGINS
+        is_table = file.read(len(TABLE_BEGINS)) == TABLE_BEGINS
+        return is_table or mark_in(fspath(path), "png") == SHEET_MARK
     return False
