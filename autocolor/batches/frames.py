@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from itertools import pairwise
 from numbers import Real
 from typing import Any, Final
@@ -89,14 +88,14 @@ def frames_of_tracks(
     steps = count if loop else max(count - 1, 1)
     made = []
     for number in range(count):
-        share = Fraction(number, steps)
+        share = number / steps
         settings: dict[str, object] = {}
         for track in moving:
-            settings |= track.settings_at(float(share))
+            settings |= track.settings_at(share)
         if turn:
-            settings |= _turned(scene, settings, turn * float(share))
+            settings |= _turned(scene, settings, turn * share)
         start, end = moving[0].span if len(moving) == 1 else (0.0, 1.0)
-        made.append(Variant(f"frame-{number + 1:04}", settings, start + (end - start) * float(share)))
+        made.append(Variant(f"frame-{number + 1:04}", settings, start + (end - start) * share))
     return tuple(made)
 
 
