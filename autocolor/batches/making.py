@@ -314,10 +314,7 @@ def _made_by(
             made = future.result()
             are_made = isinstance(made, list) and all(isinstance(each, Made) for each in made)
             if not are_made or [each.number for each in made] != [number for number, _ in run]:
-                raise UnavailableError(
-                    "an executor must return what its function returns, the picture of each variant, and"
-                    " this one returned something else; use an executor of concurrent.futures"
-                )
+                raise BrokenExecutor("they returned something else")
             yield from made
     except Exception as error:
         # An executor that was shut down raises RuntimeError itself. Dask's error is known by its name.
@@ -326,8 +323,8 @@ def _made_by(
             raise
         reason = f" ({brief(str(error))})" if str(error) else ""
         raise UnavailableError(
-            f"the workers of a batch must run until it ends, and they stopped{reason}; finished files are"
-            " whole: go on with resume, perhaps with fewer workers if memory was short"
+            f"the workers of a batch must return its pictures until it ends, and they did not{reason};"
+            " finished files are whole: go on with resume, perhaps with fewer workers if memory was short"
         ) from error
     finally:
         for _, future in under_way:

@@ -60,7 +60,7 @@ def paths_of(pattern: str | os.PathLike[str], scene: Scene, variants: Sequence[V
     file, and if a path is too long.
     """
     text = os.fspath(pattern)
-    own: dict[str, str] = {}
+    own: dict[str, object] = {}
     for match in FIELD.finditer(text):
         key, digits, _, brace = match.groups()
         if brace is not None:
@@ -70,13 +70,11 @@ def paths_of(pattern: str | os.PathLike[str], scene: Scene, variants: Sequence[V
             )
         if key not in (None, NUMBER, NAME) or (digits and key != NUMBER):
             # Only a number can have digits.
-            own[key] = _own_text(scene, match[0][1:-1])
+            own[key] = _own_value(scene, match[0][1:-1])
     paths: list[str] = []
     first: dict[str, str] = {}
     for number, variant in enumerate(variants, 1):
-        texts = {**own, NAME: _safe(variant.name)}
-        texts |= {key: _safe(stem_of(variant.settings[key])) for key in own.keys() & variant.settings.keys()}
-        path = FIELD.sub(partial(_part, texts, number), text)
+        path = FIELD.sub(partial(_part, variant, number, own), text)
         if len(path) > LONGEST_PATH:
             raise UsageError(
                 f"the path of a picture must have at most {LONGEST_PATH:,} characters, not {len(path):,} as"
@@ -92,12 +90,14 @@ def paths_of(pattern: str | os.PathLike[str], scene: Scene, variants: Sequence[V
     return tuple(paths)
 
 
-def _part(texts: Mapping[str, str], number: int, field: re.Match[str]) -> str:
-    """The text of a field of a pattern, or the brace that a doubled brace stands for."""
+def _part(variant: Variant, number: int, own: Mapping[str, object], field: re.Match[str]) -> str:
+    """The text of a field of a pattern for a variant; `own` has the scene's own values of keys."""
     key, digits, doubled, _ = field.groups()
     if doubled:
         return str(doubled[0])
-    return f"{number:0{int(digits or 1)}}" if key == NUMBER else texts[key]
+    if key == NUMBER:
+        return f"{number:0{int(digits or 1)}}"
+    return _safe(variant.name if key == NAME else stem_of(variant.settings.get(key, own[key])))
 
 
 def same_file(path: str | os.PathLike[str]) -> str:
@@ -105,14 +105,13 @@ def same_file(path: str | os.PathLike[str]) -> str:
     return os.path.normcase(os.path.abspath(path)).casefold()
 
 
-def _own_text(scene: Scene, key: str) -> str:
-    """The scene's own value of a key, as a part of a file name. Raises UsageError for an unknown key."""
+def _own_value(scene: Scene, key: str) -> object:
+    """The scene's own value of a key, plain. Raises UsageError for an unknown key."""
     with suppress(UsageError):
         place = place_of(scene, key)
         if (field := field_of(place)) is not None:
             value, name = value_at(scene, place), place.path[-1]
-            plain = {} if value is None else field.kind.to_plain(name, value)
-            return _safe(stem_of(plain.get(name)))
+            return None if value is None else field.kind.to_plain(name, value).get(name)
     close = nearest(key, (NUMBER, NAME))
     raise UsageError(f"a field of a name pattern must be a key of the scene, not {shown(key)}{close}")
 
@@ -349,8 +348,6 @@ def sheet_png(
         middle = left + (box.elements - elements) // 2, top + (box.lines - lines) // 2
         image.paste(Image.fromarray(np.ascontiguousarray(small)), middle)
         label = printable(variant.name)
-        if not isinstance(font, ImageFont.FreeTypeFont):
-            label = label.encode("ascii", "replace").decode()
         while len(label) > 1 and font.getlength(label) > box.elements:
             label = f"{label.rstrip('.')[:-1]}.."
         draw.text((left, top + box.lines + 2), label, fill=(INK, INK, INK), font=font)
