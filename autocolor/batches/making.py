@@ -137,10 +137,9 @@ class Start:
         scene = scene_with(self.scene, settings)
         rendered = None if before is None else before.rendering
         tier = cost_of_edit(self.scene if before is None else before.image.scene, scene)
-        is_lit_the_same = self.scene.words == scene.words and not costs_at_least(self.scene, scene, Tier.MIX)
-        if self.picture is not None and is_lit_the_same:
-            picture = self.picture
-        else:
+        picture = self.picture
+        if picture is None or self.scene.words != scene.words or costs_at_least(self.scene, scene, Tier.MIX):
+            # Other light, or other points, are rendered.
             tier = Tier.FRAME if rendered is None else tier
             smooth = self.drawing.smooth
             rendered = rendering(scene, smooth * self.drawing.lines, smooth * self.drawing.elements, rendered)

@@ -122,6 +122,8 @@ def test_any_executor_gives_the_same_bytes() -> None:
     expected = images(batch(scene, GRID, size=SIZE, form="png"))
     with ThreadPoolExecutor(3) as threads:
         assert images(batch(scene, GRID, size=SIZE, form="png", executor=threads)) == expected
+    # Nothing of the batch stays in this process.
+    assert making._unpickled.cache_info().currsize == 0
     assert images(batch(scene, GRID, size=SIZE, form="png", executor=Reversed())) == expected
 
 
