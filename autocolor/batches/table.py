@@ -14,7 +14,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice, product
+from itertools import product
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
@@ -106,23 +106,21 @@ def variants_of(rows: Rows) -> tuple[Variant, ...]:
 
 def _named(rows: Iterable[tuple[int, object]]) -> tuple[Variant, ...]:
     """The variants of some numbered rows. Raises UsageError, with the row, if a row is wrong."""
-    given = list(islice(rows, MOST_VARIANTS + 1))
-    if len(given) > MOST_VARIANTS:
-        rule = f"a table must have at most {MOST_VARIANTS:,} variants, not more"
-        raise UsageError(f"row {given[-1][0]}: {rule}; split it")
     variants: list[Variant] = []
     numbers: dict[str, int] = {}
-    for number, row in given:
+    for number, row in rows:
         try:
+            if len(variants) == MOST_VARIANTS:
+                raise UsageError(f"a table must have at most {MOST_VARIANTS:,} variants, not more; split it")
             variant = _variant(row)
-            other = numbers.setdefault(variant.name.casefold(), number)
-            if other != number and variant.name != UNNAMED:
-                text = f"not {shown(variant.name)} as in row {other}; rename a variant"
+            name = variant.name.casefold()
+            if name != UNNAMED and numbers.setdefault(name, number) != number:
+                text = f"not {shown(variant.name)} as in row {numbers[name]}; rename a variant"
                 raise UsageError(f"a name must be unique, {text}")
         except UsageError as problem:
             raise UsageError(f"row {number}: {problem}") from None
         variants.append(variant)
-    taken = dict.fromkeys(numbers.keys() - {UNNAMED}, 1)
+    taken = dict.fromkeys(numbers, 1)
     varying = _varying([variant.settings for variant in variants])
     for place, variant in enumerate(variants):
         if variant.name == UNNAMED:
@@ -370,15 +368,14 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     such file, UsageError for another suffix.
     """
     source = Path(path)
-    if source.suffix.lower() not in (".csv", ".json"):
+    rows_of = {".csv": _csv_rows, ".json": _json_rows}.get(source.suffix.lower())
+    if rows_of is None:
         raise UsageError(
             "a table of variants must be a file that ends in .csv or .json, not"
             f" {brief(source.name)}; rename it"
         )
-    data = read_bytes(source, LARGEST_TABLE)
-    rows = _csv_rows if source.suffix.lower() == ".csv" else _json_rows
     try:
-        variants = _named(rows(data, source.name))
+        variants = _named(rows_of(read_bytes(source, LARGEST_TABLE), source.name))
     except UsageError as problem:
         raise InputError(f"{source.name}, {problem}") from None
     if not variants:
