@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
@@ -11,12 +11,6 @@ from autocolor.commands.completion import complete_surfaces
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
 from autocolor.commands.sweep import scene_in, start_of
-from autocolor.errors import UsageError
-
-if TYPE_CHECKING:
-    from autocolor.arrays import Bytes
-    from autocolor.lighting.picture import Picture
-    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:
@@ -56,6 +50,7 @@ def palette(
     from autocolor.files.palette_file import check_palette_path, write_palette
     from autocolor.files.paths import file_stem
     from autocolor.files.writing import refuse_output
+    from autocolor.images import display_image
     from autocolor.rendering import render
 
     if output is None:
@@ -67,19 +62,6 @@ def palette(
     # A wrong name is refused before the picture is rendered.
     scene.surface(surface)
     picture = start.picture if isinstance(start, tuple) else render(scene)
-    write_palette(output, entries_of_surface(scene, picture, surface), overwrite=force)
+    write_palette(output, display_image(scene, picture).entries_of(surface), overwrite=force)
     tell_written(output)
     context.exit(code)
-
-
-def entries_of_surface(scene: Scene, picture: Picture, name: str) -> Bytes:
-    """The entries of a surface's range, (levels, 3) uint8. Raises UsageError if it has no range."""
-    from autocolor.checks import nearest
-    from autocolor.images import display_image
-
-    image, surface = display_image(scene, picture), scene.surface(name)
-    if name not in image.ranges:
-        raise UsageError(
-            f"surface {name!r} has no levels, because no part has it{nearest(name, image.ranges)}"
-        )
-    return image.entries_of(surface)

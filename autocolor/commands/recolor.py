@@ -164,11 +164,13 @@ def recolored(
 ) -> Scene:
     """The scene with settings and other colors of a surface.
 
-    Ramps and colors that are replaced are listed on stderr. Raises UsageError if a setting needs a rendering.
+    Ramps and colors that are replaced are listed on stderr, and a recoloring that no picture shows. Raises
+    UsageError if a setting needs a rendering.
     """
     from autocolor.commands.settings import tell_unset, with_settings
     from autocolor.scene.columns import Tier
-    from autocolor.scene.scene import costs_at_least
+    from autocolor.scene.scene import costs_at_least, unseen_recoloring
+    from ramtek_emu.command_line import tell
 
     edited = with_settings(scene, settings)
     if costs_at_least(scene, edited, Tier.MIX):
@@ -177,6 +179,8 @@ def recolored(
             " bands of a scalar; use it with `autocolor render`"
         )
     with as_usage():
-        painted = edited if surface is None else edited.with_surface(surface, **colors)
+        painted = edited if surface is None else edited.with_paint(surface, **colors)
     tell_unset(edited, painted)
+    if surface is not None and (sentence := unseen_recoloring(edited, painted, surface)):
+        tell(f"autocolor: {sentence}")
     return painted

@@ -40,12 +40,13 @@ COLOR, POSITION = f"surfaces.{SCENE.parts[0].surface}.object_color", "lights.key
 FADE = frames(SCENE, [{COLOR: "red"}, {COLOR: "blue"}, {COLOR: "red"}], 6)
 SWEEP = frames(SCENE, [{POSITION: [-4, -4, 3]}, {POSITION: [4, -4, 3]}], 5)
 AROUND = frames(SCENE, [], 4, turn=360)
+SMOOTH = render(SCENE, SIZE, smooth=2)
 
 
 def rendered(scene: Scene, made: tuple[Variant, ...]) -> list[Bytes]:
     """The colors of frames, each rendered by itself."""
     scenes = [scene_with(scene, frame.settings) for frame in made]
-    return [image(each, render(each, SIZE[1], SIZE[0])) for each in scenes]
+    return [image(each, size=SIZE) for each in scenes]
 
 
 @pytest.fixture
@@ -72,6 +73,15 @@ def test_a_film_is_decoded_to_exactly_its_frames(
     assert np.array_equal(decoded(tmp_path / f"film{suffix}"), rendered(SCENE, made))
 
 
+def test_frames_are_made_between_variants(tmp_path: Path) -> None:
+    colors = [{COLOR: "red"}, {COLOR: "blue"}, {COLOR: "red"}]
+    # A film that does not begin again shows the last variant, too.
+    for count, loop in ((6, True), (5, False)):
+        path = tmp_path / f"{count}.webp"
+        assert animate((SCENE, SMOOTH), colors, path, frames=count, loop=loop).frames == count
+        assert np.array_equal(decoded(path), rendered(SCENE, frames(SCENE, colors, count, loop=loop)))
+
+
 def test_frames_keep_their_order_where_another_would_cost_less(tmp_path: Path) -> None:
     back_and_forth = tuple(SWEEP[number] for number in (0, 4, 0, 4))
     animate(SCENE, [frame.settings for frame in back_and_forth], tmp_path / "film.apng", size=SIZE)
@@ -93,7 +103,7 @@ def test_a_frame_costs_its_edit_from_the_frame_before(
 
 
 def test_a_picture_alone_is_animated_without_rendering(visible: list[object], tmp_path: Path) -> None:
-    picture = render(SCENE, 2 * SIZE[1], 2 * SIZE[0], smooth=1)
+    picture = render(SCENE, (2 * SIZE[0], 2 * SIZE[1]), smooth=1)
     visible.clear()
     animate((SCENE, picture), FADE, tmp_path / "film.webp")
     assert visible == []
@@ -232,8 +242,8 @@ def test_an_existing_file_is_refused_before_anything_is_rendered_unless_it_may_b
 REFUSED: list[tuple[str, dict[str, Any], str]] = [
     ("film.mp4", {}, "or numbered pictures such as frame-{number:04}.png, not to"),
     ("film.png", {}, "an animation must be written to .webp, .apng, .gif, .ramtek, or numbered pictures"),
-    ("film.gif", {"frames_per_second": 60}, "frames per second must be a number from 0.1 to 50, not 60"),
-    ("film.webp", {"frames_per_second": "24"}, "per second must be a number from 0.1 to 100, not '24'"),
+    ("film.gif", {"fps": 60}, "frames per second must be a number from 0.1 to 50, not 60"),
+    ("film.webp", {"fps": "24"}, "per second must be a number from 0.1 to 100, not '24'"),
     ("film.ramtek", {"smooth": 2}, "a stream must have smooth=1, because a display cannot average"),
 ]
 
@@ -246,5 +256,7 @@ def test_a_wrong_name_or_rate_is_refused_before_anything_is_rendered(
         animate(SCENE, FADE, tmp_path / name, **options)
     assert sentence in str(refusal.value)
     assert visible == []
+    with pytest.raises(UsageError, match="a stream must have smooth=1"):
+        animate((SCENE, SMOOTH), FADE, tmp_path / "film.ramtek")
     with pytest.raises(UsageError, match="an animation must have at least one frame, not none"):
         animate(SCENE, [], tmp_path / "film.webp")

@@ -48,7 +48,7 @@ def made(start: Start, *settings: Mapping[str, object]) -> list[Result]:
 
 def alone(scene: Scene, drawing: Drawing = SMALL) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
     """The colors of a scene that is rendered by itself."""
-    return image(scene, render(scene, drawing.lines, drawing.elements, smooth=drawing.smooth))
+    return image(scene, size=(drawing.elements, drawing.lines), smooth=drawing.smooth)
 
 
 @given(st.lists(SETTINGS, min_size=1, max_size=5), st.sampled_from([1, 2]), st.booleans())
@@ -57,7 +57,7 @@ def test_each_picture_of_a_run_is_that_of_its_scene_rendered_alone(
 ) -> None:
     drawing = SMALL._replace(smooth=smooth)
     scene = wall_scene()
-    picture = render(scene, 12, 16, smooth=smooth) if has_picture else None
+    picture = render(scene, (16, 12), smooth=smooth) if has_picture else None
     results = made(start_of(scene, picture, drawing), *variants)
     scenes = [scene_with(scene, settings) for settings in variants]
     for result, edited in zip(results, scenes, strict=True):
@@ -90,7 +90,7 @@ def test_light_moves_see_the_points_once_and_recolorings_of_a_picture_render_not
     made(start_of(scene), *({"lights.key.position": [n, -3, 1]} for n in range(5)))
     assert (counted.renderings, counted.frames) == (5, 1)
     paints = ({"surfaces.wall.object_color": [n, n, n], "mapping": "gamma"} for n in range(5))
-    made(start_of(scene, render(scene, 12, 16)), *paints)
+    made(start_of(scene, render(scene, (16, 12))), *paints)
     assert (counted.renderings, counted.frames) == (5, 1)
 
 
@@ -99,7 +99,7 @@ def test_a_picture_is_rendered_again_only_where_a_variant_changes_the_light(
 ) -> None:
     counted = Counted(monkeypatch)
     scene = wall_scene()
-    start = start_of(scene, render(scene, 12, 16))
+    start = start_of(scene, render(scene, (16, 12)))
     results = made(start, {}, {"ambient": 0.5}, {"ambient": 0.6}, {"background": "red"})
     assert (counted.renderings, counted.frames) == (2, 1)
     assert [each.tier for each in results] == [None, Tier.FRAME, Tier.MIX, Tier.MIX]
@@ -108,7 +108,7 @@ def test_a_picture_is_rendered_again_only_where_a_variant_changes_the_light(
 def test_words_that_stand_for_normals_need_a_rendering_of_a_picture() -> None:
     scene = scene_of(cube(), view=View((3.0, -4.0, 2.0), target=(0.5, 0.5, 0.5)))
     settings = {"words": "normals", "lights.key.position": [2, -3, 4]}
-    picture = render(scene_with(scene, {**settings, "words": "levels"}), 12, 16)
+    picture = render(scene_with(scene, {**settings, "words": "levels"}), (16, 12))
     (result,) = made(
         start_of(scene_with(scene, {**settings, "words": "levels"}), picture), {"words": "normals"}
     )

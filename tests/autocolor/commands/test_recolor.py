@@ -9,13 +9,15 @@ from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 from tests.small import wall_scene
 from tests.tables import first
 
+SAME = "autocolor: surface 'side' has these colors already; the recoloring changes nothing\n"
+
 
 def settings(*texts: str) -> list[str]:
     return [part for text in texts for part in ("--set", text)]
 
 
 def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, run: Run) -> None:
-    assert run("recolor", "scene.npz", "side") == (0, "", "wrote scene-side.png\n")
+    assert run("recolor", "scene.npz", "side") == (0, "", f"{SAME}wrote scene-side.png\n")
     assert is_same("scene-side.png", "scene.png")
 
 
@@ -95,8 +97,8 @@ def named(name: str) -> Scene:
 
 def test_the_surface_s_name_in_the_output_s_is_made_one_of_a_file(folder: Path, run: Run) -> None:
     scene = named("a/b")
-    write_picture("wall.npz", scene, render(scene, 24, 32))
-    assert run("recolor", "wall.npz", "a/b").err == "wrote wall-b.png\n"
+    write_picture("wall.npz", scene, render(scene, (32, 24)))
+    assert run("recolor", "wall.npz", "a/b", "--object", "red").err == "wrote wall-b.png\n"
     assert run("recolor", "wall.npz", *settings("mapping=gamma")).err == "wrote wall-recolored.png\n"
 
 

@@ -33,7 +33,7 @@ def test_faults_of_the_mesh_are_listed_and_count_under_strict(folder: Path, run:
 
 def test_faults_are_shown_in_a_window(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     shown: list[History] = []
-    monkeypatch.setattr("autocolor.commands.view.show", shown.append)
+    monkeypatch.setattr("autocolor.commands.window.show", shown.append)
     assert run("validate", "two.obj", "--show").code == 0
     assert shown[0].scene.scalar is not None
     assert shown[0].scene.scalar.name == "fault"
@@ -136,7 +136,7 @@ def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
         ("fault", "polygon"),
     ]
     assert ([part.stage for part in scene.parts], scene.exposure) == ([False], "auto")
-    colors = {tuple(color) for color in image(scene, render(scene, 60, 80)).reshape(-1, 3).tolist()}
+    colors = {tuple(color) for color in image(scene, render(scene, (80, 60))).reshape(-1, 3).tolist()}
     red, green, blue = COLORS[list(KINDS).index("turned")]
     # A shade of the kind's color: its components keep their order.
     assert any(g > b > r for r, g, b in colors), (red, green, blue)
