@@ -75,7 +75,7 @@ PLACES = {
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
     ("PIL",): {
         ("ramtek_emu.png", True), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
-        ("autocolor.batches.sheet", False), ("autocolor.scene.kinds", False),
+        ("autocolor.scene.kinds", False),
     },
     ("platformdirs",): {("autocolor.files.state", True)},
     ("vtkmodules",): {

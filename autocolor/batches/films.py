@@ -17,8 +17,15 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.batches.frames import frames_of_tracks
-from autocolor.batches.making import Batch, Source, batch_results, checked_batch, scene_and_picture
-from autocolor.batches.runs import Start, tier_of
+from autocolor.batches.making import (
+    Batch,
+    Drawn,
+    Source,
+    batch_results,
+    checked_batch,
+    scene_and_picture,
+    tier_of,
+)
 from autocolor.batches.table import Result, Rows, Variant, variants_of
 from autocolor.checks import brief, shown
 from autocolor.errors import InputError, UsageError
@@ -136,15 +143,10 @@ def animate(
 def kind_of(path: str) -> str:
     """The suffix of an animation's file. Raises UsageError for a name of another kind."""
     suffix = Path(path).suffix.lower()
-    if suffix == ".png" and "{" not in path:
+    if suffix not in (*FILMS, STREAM) and not (suffix == ".png" and "{" in path):
         raise UsageError(
-            f"numbered pictures must have a pattern such as frame-{{number:04}}.png, not {shown(path)}; or"
-            " end the name in .apng for an animated PNG"
-        )
-    if suffix not in (*FILMS, ".png", STREAM):
-        raise UsageError(
-            f"an animation must be written to .webp, .apng, .gif, frame-{{number:04}}.png or .ramtek, not to"
-            f" {shown(path)}; rename it"
+            "an animation must be written to .webp, .apng, .gif, .ramtek, or numbered pictures such as"
+            f" frame-{{number:04}}.png, not to {shown(path)}; rename it"
         )
     return suffix
 
@@ -190,7 +192,7 @@ def _stream(
         smooth = 1
     source = scene if picture is None else (scene, picture)
     batch = checked_batch(source, variants, None, size=size, smooth=smooth, ordered=True)
-    if batch.drawing.smooth > 1:
+    if batch.start.drawing.smooth > 1:
         raise UsageError(
             "a stream must have smooth=1, because a display cannot average; leave it out, or render the"
             " picture file with --smooth 1"
@@ -203,33 +205,29 @@ def _stream(
 
 def _images(batch: Batch, tell: Progress) -> Iterator[DisplayImage]:
     """The display images of frames that change entries alone. Raises InputError, with the frame."""
-    start = Start(batch.scene, batch.picture)
+    drawn: Drawn | None = None
     first: Scene | None = None
     for number, variant in enumerate(batch.variants, 1):
         try:
-            scene = scene_with(batch.scene, variant.settings)
+            scene = scene_with(batch.start.scene, variant.settings)
             first = first or scene
-            _check_entries_alone(first, scene, batch.variants[0].settings, variant.settings)
-            image, tier = start.image_of(variant.settings, batch.drawing)
+            # Where words stand for normals, an edit of a light changes entries alone.
+            has_the_normals = first.words == scene.words == NORMALS and sees_the_same(first, scene)
+            if costs_at_least(first, scene, Tier.LEVELS) and not has_the_normals:
+                raise InputError(_other_words(first, batch.variants[0].settings, variant.settings))
+            drawn = batch.start.drawn(variant.settings, drawn)
         except (InputError, UsageError) as error:
             raise InputError(f"frame {number}: {problem}" for problem in error.problems) from None
-        yield image
-        tell(Result(variant.name, variant.settings, tier=tier))
+        yield drawn.image
+        tell(Result(variant.name, variant.settings, tier=drawn.tier))
 
 
-def _check_entries_alone(
-    first: Scene, other: Scene, one: Mapping[str, object], two: Mapping[str, object]
-) -> None:
-    """Raise InputError, with the key, if two frames, with their settings, differ in more than entries."""
-    if not costs_at_least(first, other, Tier.LEVELS):
-        return
-    if first.words == other.words == NORMALS and sees_the_same(first, other):
-        # Words stand for normals, so an edit of a light changes entries alone.
-        return
-    tier, key = max((tier_of(first, key), key) for key in {*one, *two} if one.get(key) != two.get(key))
+def _other_words(scene: Scene, one: Mapping[str, object], two: Mapping[str, object]) -> str:
+    """What is wrong with a frame that changes words, with the dearest key in which the settings differ."""
+    tier, key = max((tier_of(scene, key), key) for key in {*one, *two} if one.get(key) != two.get(key))
     is_light = tier in (Tier.MIX, Tier.LIGHT)
     by_normals = ", or let words stand for normals (--normals; words='normals' in Python)" if is_light else ""
-    raise InputError(
+    return (
         "a frame of a stream must change entries of the lookup table alone, and an edit of"
         f" {brief(key)} changes words; write a film such as .webp{by_normals}"
     )

@@ -15,8 +15,6 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from fractions import Fraction
 from itertools import pairwise
 from numbers import Real
 from typing import Any, Final
@@ -24,7 +22,7 @@ from typing import Any, Final
 from autocolor.batches.table import MOST_VARIANTS, Rows, Variant, check_keys, variants_of
 from autocolor.checks import brief, is_whole, shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.settings import SettingPlace, field_of, place_of, row_at, scene_with, value_at
+from autocolor.files.settings import field_of, place_of, row_at, scene_with, value_at
 from autocolor.scene.row_kinds import OneRowOf
 from autocolor.scene.scene import Scene, check_scene, cost_of_edit
 from autocolor.scene.surfaces import Paint, Surface
@@ -81,7 +79,7 @@ def frames_of_tracks(
         raise UsageError(
             f"a turn must be a number of degrees up to {LARGEST_TURN:,.0f}, not {shown(turn)}; choose another"
         )
-    moving = [_Track.of(scene, variants) for variants in tracks if variants]
+    moving = [_Track(scene, variants) for variants in tracks if variants]
     check_keys(tracks)
     if not turn and all(len(track.variants) < 2 for track in moving):
         raise UsageError("an animation must have at least two variants, or a turn; add a value to a list")
@@ -90,14 +88,14 @@ def frames_of_tracks(
     steps = count if loop else max(count - 1, 1)
     made = []
     for number in range(count):
-        share = Fraction(number, steps)
+        share = number / steps
         settings: dict[str, object] = {}
         for track in moving:
-            settings |= track.settings_at(float(share))
+            settings |= track.settings_at(share)
         if turn:
-            settings |= _turned(scene, settings, turn * float(share))
+            settings |= _turned(scene, settings, turn * share)
         start, end = moving[0].span if len(moving) == 1 else (0.0, 1.0)
-        made.append(Variant(f"frame-{number + 1:04}", settings, start + (end - start) * float(share)))
+        made.append(Variant(f"frame-{number + 1:04}", settings, start + (end - start) * share))
     return tuple(made)
 
 
@@ -119,23 +117,15 @@ def in_step(lists: Sequence[Sequence[Variant]]) -> list[list[Variant]]:
     return list(tables.values())
 
 
-@dataclass(frozen=True)
 class _Track:
     """A table of variants with their times, their scenes, and the places of all their keys."""
 
-    scene: Scene
-    variants: Sequence[Variant]
-    times: Sequence[float]
-    scenes: Sequence[Scene]
-    places: Mapping[str, SettingPlace]
-
-    @classmethod
-    def of(cls, scene: Scene, variants: Sequence[Variant]) -> _Track:
+    def __init__(self, scene: Scene, variants: Sequence[Variant]) -> None:
         """The track of some variants, at least one. Raises UsageError and InputError."""
-        scenes = []
+        self.scene, self.variants, self.scenes = scene, variants, list[Scene]()
         for variant in variants:
             try:
-                scenes.append(scene_with(scene, variant.settings))
+                self.scenes.append(scene_with(scene, variant.settings))
             except (InputError, UsageError) as error:
                 base = InputError if isinstance(error, InputError) else UsageError
                 raise base(
@@ -145,17 +135,10 @@ class _Track:
         if any(key in keys for key in LINE_OF_SIGHT):
             # Between a view with a target and a view with a direction, there are views with directions.
             keys |= dict.fromkeys(LINE_OF_SIGHT)
-        return cls(scene, variants, times_of(variants), scenes, {key: place_of(scene, key) for key in keys})
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """The times of the first and the last variant."""
-        return self.times[0], self.times[-1]
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether the last variant gives the same scene as the first."""
-        return cost_of_edit(self.scenes[0], self.scenes[-1]) is None
+        self.times, self.places = times_of(variants), {key: place_of(scene, key) for key in keys}
+        self.span = self.times[0], self.times[-1]
+        # Whether the last variant gives the same scene as the first.
+        self.is_closed = cost_of_edit(self.scenes[0], self.scenes[-1]) is None
 
     def settings_at(self, share: float) -> Mapping[str, object]:
         """The settings at a share of the duration, 0 to 1."""

@@ -1,48 +1,63 @@
 """Making batches: in this process or by any executor, in bounded memory, and resuming a stopped batch.
 
-An executor gets runs of variants one by one, and returns the bytes of finished files; only this process
-writes files.
+Each variant reuses whatever its edit leaves of the variant before it. So variants that see the same points
+are made one after the other, among them those with the same light, and so on down to recolorings: a grid of
+views, lights and paints renders each view once and lights each view once for all paints.
+
+An executor gets runs of variants one by one, each with the scene and its picture, and returns the bytes of
+finished files; only this process writes files. Each worker keeps its last rendering until it works at another
+batch.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import os
+import pickle
+import time
 import warnings
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
-from itertools import islice
+from functools import lru_cache
+from itertools import chain, groupby, islice
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Final, TypedDict, Unpack
+from typing import Final, NamedTuple, TypedDict, Unpack
 
 from autocolor.arrays import Bytes
 from autocolor.batches.outputs import (
     ARRAY,
     SHEET_MARK,
+    Box,
     base_mark,
+    box_of,
     form_of,
     mark_in,
     mark_of,
+    marked,
     paths_of,
+    read_thumbnail,
     same_file,
+    sheet_png,
+    thumbnail,
 )
-from autocolor.batches.runs import Drawing, Made, Start, VariantTask, cut, make_run, runs_of
-from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
-from autocolor.budget import allowed_memory, validated_limit
+from autocolor.budget import allowed_memory, allowing, validated_limit
 from autocolor.checks import brief, nearest, shown
-from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
+from autocolor.errors import AutocolorError, InputError, OutputError, UnavailableError, UsageError
 from autocolor.files.opening import is_picture, read_scene
 from autocolor.files.picture_file import read_picture
 from autocolor.files.settings import field_of, place_of, scene_with
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
-from autocolor.images import check_png_level, default_smooth
+from autocolor.images import check_png_level, default_smooth, display_image, smoothed
 from autocolor.lighting.picture import Picture, check_surfaces
-from autocolor.rendering import SIZE, checked_size
-from autocolor.scene.scene import Scene, check_scene
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.rendering import SIZE, Rendering, checked_size, rendering
+from autocolor.scene.columns import Tier
+from autocolor.scene.scene import Scene, check_scene, cost_of_edit, costs_at_least
 
 Source = Scene | tuple[Scene, Picture] | str | PathLike[str]
 """What variants are made from: a scene, a scene with its picture, or the path of either."""
@@ -54,17 +69,11 @@ Measured: handing out the coupe's picture takes this process 1.6 ms for a run of
 variant for runs of 16. With runs of 1, 4, 16 and 64, two processes take the same time within a tenth.
 """
 
-BYTES_OF_RUN: Final = 1 << 28
-"""Limit: bytes that a run returns; runs of large pictures are shorter."""
-
 BYTES_UNDER_WAY: Final = 1 << 29
 """Limit: bytes of the pictures that an executor computes or has finished. It always gets two runs."""
 
 WORKERS: Final = 62
 """Assumed: the workers of an executor that does not say how many it has."""
-
-MORE_THAN_WORKERS: Final = 2
-"""Runs that wait for a worker, so that no worker waits for a run."""
 
 PROBLEMS_SHOWN: Final = 10
 """The problems in the message about a batch of which no variant could be made."""
@@ -72,6 +81,148 @@ PROBLEMS_SHOWN: Final = 10
 
 class VariantWarning(UserWarning):
     """A variant of a batch could not be made; the others are."""
+
+
+# Pictures of variants, each drawn after the variant before it.
+
+
+class Drawing(NamedTuple):
+    """How the pictures of a batch are drawn: `smooth` times the lines and elements are rendered.
+
+    All but the thumbnail, the size of thumbnails for a sheet, and the limit of memory determine a file.
+    """
+
+    lines: int
+    elements: int
+    smooth: int
+    form: str
+    level: int | None
+    thumbnail: Box | None
+    limit: float
+
+
+Numbered = tuple[int, Variant]
+"""A variant with its number, from 0."""
+
+
+class Made(NamedTuple):
+    """The number of a variant, its result, and its thumbnail for a sheet."""
+
+    number: int
+    result: Result
+    thumbnail: Bytes | None
+
+
+class Drawn(NamedTuple):
+    """A variant as it was drawn, for the variant after it: its image, its rendering if any, and its cost."""
+
+    image: DisplayImage
+    rendering: Rendering | None
+    tier: Tier | None
+
+
+@dataclass
+class Start:
+    """What all variants have: the scene, perhaps its picture, the drawing, and the variant drawn last."""
+
+    scene: Scene
+    picture: Picture | None
+    drawing: Drawing
+    base: str
+    """The checksum of the scene, its picture and the drawing; empty for arrays."""
+    latest: Drawn | None = None
+
+    def drawn(self, settings: Mapping[str, object], before: Drawn | None) -> Drawn:
+        """A variant, drawn after the variant `before`. Raises the errors of `scene_with` and `rendering`."""
+        scene = scene_with(self.scene, settings)
+        rendered = None if before is None else before.rendering
+        tier = cost_of_edit(self.scene if before is None else before.image.scene, scene)
+        picture = self.picture
+        if picture is None or self.scene.words != scene.words or costs_at_least(self.scene, scene, Tier.MIX):
+            # Other light, or other points, are rendered.
+            tier = Tier.FRAME if rendered is None else tier
+            smooth = self.drawing.smooth
+            rendered = rendering(scene, smooth * self.drawing.lines, smooth * self.drawing.elements, rendered)
+            picture = rendered.picture
+        image = display_image(scene, picture, None if before is None else before.image)
+        return Drawn(image, rendered, tier)
+
+
+def made_of(start: Start, variants: Iterable[Numbered]) -> Generator[Made, None, None]:
+    """The pictures of variants, one by one. A variant that cannot be made has a problem instead."""
+    # Other threads may draw other variants meanwhile.
+    latest, drawing = start.latest, start.drawing
+    for number, variant in variants:
+        begun = time.thread_time()
+        result, small = Result(variant.name, variant.settings), None
+        try:
+            with allowing(drawing.limit):
+                latest = start.latest = start.drawn(variant.settings, latest)
+                colors = smoothed(latest.image, drawing.smooth)
+            small = None if drawing.thumbnail is None else thumbnail(colors, drawing.thumbnail)
+            is_array, mark = drawing.form == ARRAY, mark_of(start.base, variant)
+            image = colors if is_array else marked(drawing.form, colors, drawing.level, mark)
+            result = result._replace(image=image, tier=latest.tier)
+        except AutocolorError as error:
+            result = result._replace(problem=str(error))
+        except MemoryError:
+            problem = "a picture must fit in memory, and this one does not; make it smaller"
+            result = result._replace(problem=problem)
+        yield Made(number, result._replace(seconds=time.thread_time() - begun), small)
+
+
+def make_run(pickled: bytes, variants: Sequence[Numbered]) -> list[Made]:
+    """The pictures of a run for an executor. Runs of a batch share one start in a process."""
+    return list(made_of(_unpickled(pickled), variants))
+
+
+@lru_cache(maxsize=1)
+def _unpickled(pickled: bytes) -> Start:
+    start: Start = pickle.loads(pickled)
+    return start
+
+
+# The order of variants: each costs only the edit from the variant before it.
+
+
+def runs_of(scene: Scene, variants: Sequence[Numbered], most: int) -> list[list[Numbered]]:
+    """All variants in runs of at most `most`, in the order to make them.
+
+    Variants of one frame share as few runs as possible, and several small frames share a run.
+    """
+    keys = dict.fromkeys(key for _, variant in variants for key in variant.settings)
+    tiers = {key: tier_of(scene, key) for key in keys}
+    dear = sorted((key for key in tiers if tiers[key] > Tier.ENTRIES), key=tiers.__getitem__, reverse=True)
+    frames = [key for key in dear if tiers[key] is Tier.FRAME]
+
+    def values(variant: Variant, some: Sequence[str]) -> list[str]:
+        return [repr(variant.settings.get(key)) for key in some]
+
+    # Sorting is stable: recolorings stay in the order of their table.
+    in_order = sorted(variants, key=lambda numbered: values(numbered[1], dear))
+    runs: list[list[Numbered]] = []
+    for _, frame in groupby(in_order, key=lambda numbered: values(numbered[1], frames)):
+        first, *others = cut(list(frame), most)
+        if runs and len(runs[-1]) + len(first) <= most:
+            runs[-1] += first
+        else:
+            runs.append(first)
+        runs += others
+    return runs
+
+
+def cut(variants: Sequence[Numbered], most: int) -> list[list[Numbered]]:
+    """Consecutive runs of at most `most` variants."""
+    return [list(variants[first : first + most]) for first in range(0, len(variants), most)]
+
+
+def tier_of(scene: Scene, key: str) -> Tier:
+    """What an edit of a key's field costs at most; NOTHING for a whole row. Raises UsageError for no key."""
+    field = field_of(place_of(scene, key))
+    return Tier.NOTHING if field is None else field.tier
+
+
+# Batches.
 
 
 class Options(TypedDict, total=False):
@@ -90,151 +241,101 @@ class Options(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Batch:
-    """A checked batch: what to make, how, where, and by whom."""
+    """A checked batch: what to make, where, and how."""
 
-    scene: Scene
-    picture: Picture | None
+    start: Start
     variants: tuple[Variant, ...]
     paths: tuple[str, ...]
-    drawing: Drawing
-    base: str
-    """The checksum of the scene, its picture and the drawing."""
     options: Options
 
-    def results(self) -> Generator[tuple[int, Result, Bytes | None], None, None]:
-        """The number, the result and the thumbnail of each variant: whole files first, then new pictures."""
-        missing = []
+    def results(self) -> Generator[Made, None, None]:
+        """The result of each variant: whole files first, then new pictures."""
+        start, drawing = self.start, self.start.drawing
+        missing: list[Numbered] = []
         for number, variant in enumerate(self.variants):
-            mark = mark_in(self.paths[number], self.drawing.form) if self.options.get("resume") else ""
-            if mark and mark == mark_of(self.base, variant):
-                yield self._skipped(number)
+            is_resumed, path = self.options.get("resume"), self.paths[number] if self.paths else ""
+            if is_resumed and mark_in(path, drawing.form) == mark_of(start.base, variant):
+                small = None if drawing.thumbnail is None else read_thumbnail(path, drawing.thumbnail)
+                yield Made(number, Result(variant.name, variant.settings, path, was_made=False), small)
             else:
-                missing.append(number)
-        if not missing:
-            return
-        # A small batch has at least a run for each worker.
+                missing.append((number, variant))
         executor = self.options.get("executor")
-        most = min(VARIANTS_OF_RUN, -(-len(missing) // (_workers(executor) or 1)))
-        most = max(1, min(most, BYTES_OF_RUN // self.drawing.bytes_of_picture))
-        rows = [self.variants[number] for number in missing]
+        workers = 1 if executor is None else getattr(executor, "_max_workers", None) or WORKERS
+        most = max(2, BYTES_UNDER_WAY // (3 * drawing.lines * drawing.elements))
+        # A small batch has at least a run for each worker.
+        of_run = max(1, min(VARIANTS_OF_RUN, -(-len(missing) // workers), most // 2))
         is_ordered = self.options.get("ordered")
-        order = cut(range(len(missing)), most) if is_ordered else runs_of(self.scene, rows, most)
-        runs = ([self._task(missing[place]) for place in run] for run in order)
-        made = self._made_here(runs) if executor is None else self._made_by(executor, runs)
+        runs = cut(missing, of_run) if is_ordered else runs_of(start.scene, missing, of_run)
+        if executor is None:
+            made = made_of(start, chain.from_iterable(runs))
+        else:
+            # A run waits for each worker, so that no worker waits for a run.
+            made = _made_by(executor, start, runs, min(2 * workers, most // of_run))
         with closing(made):
             for each in made:
-                yield self._finished(each)
+                yield self._written(each) if self.paths else each
 
-    def _task(self, number: int) -> VariantTask:
-        variant = self.variants[number]
-        mark = "" if self.drawing.form == ARRAY else mark_of(self.base, variant)
-        return VariantTask(number, dict(variant.settings), mark)
-
-    def _made_here(self, runs: Iterator[list[VariantTask]]) -> Generator[Made, None, None]:
-        """The pictures of the runs, made in this process."""
-        start = Start(self.scene, self.picture)
-        for task in (task for run in runs for task in run):
-            yield from make_run(start, self.drawing, [task])
-
-    def _made_by(self, executor: Executor, runs: Iterator[list[VariantTask]]) -> Generator[Made, None, None]:
-        """The pictures of the runs, made by an executor, in their order.
-
-        Raises UnavailableError if its workers end, or if it returns something else.
-        """
-        start = Start(self.scene, self.picture)
-        most = max(2, BYTES_UNDER_WAY // (self.drawing.bytes_of_picture * VARIANTS_OF_RUN))
-        most = min(most, (_workers(executor) or WORKERS) + MORE_THAN_WORKERS)
-        under_way: deque[tuple[list[VariantTask], Future[list[Made]]]] = deque()
-        try:
-            while True:
-                for run in islice(runs, most - len(under_way)):
-                    with _working(RuntimeError, CancelledError):
-                        under_way.append((run, executor.submit(make_run, start, self.drawing, run)))
-                if not under_way:
-                    return
-                tasks, future = under_way.popleft()
-                with _working(BrokenExecutor, CancelledError):
-                    made = future.result()
-                if not _is_made_of(made, tasks):
-                    raise UnavailableError(
-                        "an executor must return what its function returns, the picture of each variant, and"
-                        " this one returned something else; use an executor of concurrent.futures"
-                    )
-                yield from made
-        finally:
-            for _, future in under_way:
-                future.cancel()
-
-    def _skipped(self, number: int) -> tuple[int, Result, Bytes | None]:
-        """The result of a variant whose file is whole."""
-        variant, path, size = self.variants[number], self.paths[number], self.drawing.thumbnail
-        small = None if size is None else read_thumbnail(path, size)
-        return number, Result(variant.name, variant.settings, path, was_made=False), small
-
-    def _finished(self, made: Made) -> tuple[int, Result, Bytes | None]:
-        """The result of a variant that was made, after its file is written. Raises WriteError."""
-        number, image, problem, seconds, tier, small = made
-        variant, path = self.variants[number], self.paths[number] if self.paths else None
-        if path is not None:
-            if isinstance(image, bytes):
-                try:
-                    self._write(path, image)
-                except OutputError as error:
-                    problem = str(error)
-            image = None
-        if problem:
-            path, small = None, None
-        return number, Result(variant.name, variant.settings, path, image, problem, seconds, tier), small
-
-    def _write(self, path: str, data: bytes) -> None:
-        """Write a file and, if it is missing, its folder. Raises OutputError, WriteError."""
-        _make_folder(path)
-        # Replace an earlier picture of a batch, and never any other file.
-        overwrites = self.options.get("overwrite", False)
-        is_ours = self.options.get("resume", False) and mark_in(path, self.drawing.form) != ""
-        write_atomically(path, data, overwrite=overwrites or is_ours, sync=self.options.get("sync", True))
+    def _written(self, made: Made) -> Made:
+        """A result whose picture is written to its file. Raises WriteError."""
+        number, result, small = made
+        path, image = self.paths[number], result.image
+        if isinstance(image, bytes):
+            # Replace an earlier picture of a batch, and never any other file.
+            is_ours = self.options.get("resume", False) and mark_in(path, self.start.drawing.form) != ""
+            overwrite = self.options.get("overwrite", False) or is_ours
+            _make_folder(path)
+            try:
+                write_atomically(path, image, overwrite=overwrite, sync=self.options.get("sync", True))
+                result = result._replace(path=path)
+            except OutputError as error:
+                result, small = result._replace(problem=str(error)), None
+        return Made(number, result._replace(image=None), small)
 
 
-def _workers(executor: Executor | None) -> int | None:
-    """How many workers an executor has; None if it does not say."""
-    workers = getattr(executor, "_max_workers", None)
-    return workers if isinstance(workers, int) and workers > 0 else None
+def _made_by(
+    executor: Executor, start: Start, runs: Iterable[list[Numbered]], most: int
+) -> Generator[Made, None, None]:
+    """The pictures of runs in their order, made by an executor, which has at most `most` of them at a time.
 
-
-def _make_folder(path: str | PathLike[str]) -> None:
-    """Make the folder of a file if it is missing. Raises OutputError."""
-    folder = Path(path).parent
+    Raises UnavailableError if its workers end, or if it returns something else.
+    """
+    # No variant needs the planes of the lights: a variant with other light is rendered.
+    picture = None if start.picture is None else dataclasses.replace(start.picture, light_planes={})
+    runs, pickled = iter(runs), pickle.dumps(dataclasses.replace(start, picture=picture), protocol=5)
+    under_way: deque[tuple[list[Numbered], Future[list[Made]]]] = deque()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(
-            f"an output must have a folder, and {brief(str(folder))} cannot be made ({reason_of(error)});"
-            " choose another place"
-        ) from None
-
-
-@contextmanager
-def _working(*broken: type[Exception]) -> Iterator[None]:
-    """Raise UnavailableError for the errors of an executor that is broken or shut down."""
-    try:
-        yield
+        while True:
+            for run in islice(runs, most - len(under_way)):
+                under_way.append((run, executor.submit(make_run, pickled, run)))
+            if not under_way:
+                return
+            run, future = under_way.popleft()
+            made = future.result()
+            are_made = isinstance(made, list) and all(isinstance(each, Made) for each in made)
+            if not are_made or [each.number for each in made] != [number for number, _ in run]:
+                raise BrokenExecutor("they returned something else")
+            yield from made
     except Exception as error:
-        # Dask's error for a task whose workers ended is known by its name.
-        if not isinstance(error, broken) and type(error).__name__ != "KilledWorker":
+        # An executor that was shut down raises RuntimeError itself. Dask's error is known by its name.
+        is_broken = isinstance(error, (BrokenExecutor, CancelledError)) or type(error) is RuntimeError
+        if not is_broken and type(error).__name__ != "KilledWorker":
             raise
         reason = f" ({brief(str(error))})" if str(error) else ""
         raise UnavailableError(
-            f"the workers of a batch must run until it ends, and they stopped{reason}; finished files are"
-            " whole: go on with resume, perhaps with fewer workers if memory was short"
+            f"the workers of a batch must return its pictures until it ends, and they did not{reason};"
+            " finished files are whole: go on with resume, perhaps with fewer workers if memory was short"
         ) from error
+    finally:
+        for _, future in under_way:
+            future.cancel()
+        # An executor of threads leaves its start in this process.
+        _unpickled.cache_clear()
 
 
-def _is_made_of(made: object, tasks: Sequence[VariantTask]) -> bool:
-    """Whether an executor returned a picture or a problem for each variant of a run."""
-    numbers = (
-        [each.number if isinstance(each, Made) else None for each in made] if isinstance(made, list) else []
-    )
-    return numbers == [task.number for task in tasks]
+def _make_folder(path: str | PathLike[str]) -> None:
+    """Make the folder of a file if it is missing; if it cannot be made, writing the file says why."""
+    with suppress(OSError):
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
 
 
 def scene_and_picture(source: Source) -> tuple[Scene, Picture | None]:
@@ -270,9 +371,7 @@ def _drawing(picture: Picture | None, form: str, thumbnail: Box | None, options:
 
 def check_keys(scene: Scene, variants: Iterable[Variant]) -> None:
     """Raise UsageError, which begins with the key, if a variant sets a key that the scene does not have."""
-    values: dict[str, object] = {}
-    for variant in variants:
-        values = {**variant.settings, **values} if variant.settings.keys() - values.keys() else values
+    values = {key: value for variant in variants for key, value in variant.settings.items()}
     for key, value in values.items():
         if field_of(place_of(scene, key)) is None:
             # A whole inline row has no field of its own, but a value.
@@ -296,8 +395,7 @@ def checked_batch(
                 f"there is no option {shown(name)} of a batch{nearest(name, Options.__annotations__)}"
             )
     form, executor = form_of(output, options.get("form")), options.get("executor")
-    is_class = isinstance(executor, type)
-    if executor is not None and (is_class or not callable(getattr(executor, "submit", None))):
+    if executor is not None and (isinstance(executor, type) or not hasattr(executor, "submit")):
         raise UsageError(
             f"an executor must be one of concurrent.futures or the like, not {shown(executor)}; leave it out"
             " for this process"
@@ -314,15 +412,14 @@ def checked_batch(
     drawing = _drawing(picture, form, thumbnail, options)
     paths = () if output is None else paths_of(output, scene, rows)
     if not (options.get("overwrite") or options.get("resume")):
-        existing = [path for path in paths if os.path.lexists(path)]
-        if existing:
-            others = f" and {len(existing) - 1:,} more, which exist" if existing[1:] else ", which exists"
+        existing = next(filter(os.path.lexists, paths), None)
+        if existing is not None:
             raise OutputError(
-                f"the pictures of a batch must be new files, not {brief(existing[0])}{others}; resume the"
+                f"the pictures of a batch must be new files, not {brief(existing)}, which exists; resume the"
                 " batch with --resume (resume=True in Python), or overwrite with --force (overwrite=True)"
             )
-    base = "" if form == ARRAY else base_mark(scene, picture, drawing.numbers)
-    return Batch(scene, picture, rows, paths, drawing, base, options)
+    base = "" if form == ARRAY else base_mark(scene, picture, drawing[:5])
+    return Batch(Start(scene, picture, drawing, base), rows, paths, options)
 
 
 def batch_results(
@@ -385,10 +482,11 @@ def batch(
     rows = variants_of(variants)
     if columns is not None and sheet is None:
         raise UsageError("columns are for a contact sheet; give a sheet, or leave them out")
-    cells = None if sheet is None else ContactSheet(rows, columns)
-    checked = checked_batch(source, rows, output, thumbnail=None if cells is None else cells.box, **options)
-    if output is None and checked.drawing.form == ARRAY:
-        needed = len(rows) * checked.drawing.bytes_of_picture
+    box = None if sheet is None else box_of(rows, columns)
+    checked = checked_batch(source, rows, output, thumbnail=box, **options)
+    drawing = checked.start.drawing
+    if output is None and drawing.form == ARRAY:
+        needed = len(rows) * 3 * drawing.lines * drawing.elements
         if needed > allowed_memory():
             raise UsageError(
                 f"the arrays of a batch must have at most {allowed_memory():,} bytes, not {needed:,}; give an"
@@ -402,22 +500,21 @@ def batch(
             _make_folder(path)
             is_ours = options.get("resume", False) and _is_of_batch(path)
             refuse_output(path, overwrite=options.get("overwrite", False) or is_ours)
-    results: dict[int, Result] = {}
+    made: dict[int, Made] = {}
     try:
-        with closing(checked.results()) as made:
-            for number, result, small in made:
-                results[number] = result
-                if cells is not None:
-                    cells.put(number, small)
+        with closing(checked.results()) as results:
+            for each in results:
+                made[each.number] = each
                 if progress is not None:
-                    progress(result)
+                    progress(each.result)
     finally:
         # A stopped batch has these files, too.
-        in_order = [results[number] for number in sorted(results)]
+        in_order = [made[number].result for number in sorted(made)]
         if table is not None:
             write_atomically(table, results_bytes(in_order), overwrite=True)
-        if sheet is not None and cells is not None:
-            write_atomically(sheet, cells.png(), overwrite=True)
+        if sheet is not None:
+            thumbnails = {number: each.thumbnail for number, each in made.items()}
+            write_atomically(sheet, sheet_png(rows, thumbnails, columns), overwrite=True)
     failed = [result for result in in_order if result.problem]
     sentences = [f"{brief(result.name)}: {line}" for result in failed for line in result.problem.splitlines()]
     if len(failed) == len(rows):
@@ -430,8 +527,7 @@ def batch(
 
 def _is_of_batch(path: str | PathLike[str]) -> bool:
     """Whether a file is the sheet or the table of a batch."""
-    if not fspath(path).lower().endswith(".csv"):
-        return mark_in(fspath(path), "png") == SHEET_MARK
     with suppress(OSError), open(path, "rb") as file:
-        return file.read(len(TABLE_BEGINS)) == TABLE_BEGINS
+        is_table = file.read(len(TABLE_BEGINS)) == TABLE_BEGINS
+        return is_table or mark_in(fspath(path), "png") == SHEET_MARK
     return False

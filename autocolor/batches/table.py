@@ -14,7 +14,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice, product
+from itertools import product
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
@@ -110,23 +110,21 @@ def variants_of(rows: Rows) -> tuple[Variant, ...]:
 
 def _named(rows: Iterable[tuple[int, object]]) -> tuple[Variant, ...]:
     """The variants of some numbered rows. Raises UsageError, with the row, if a row is wrong."""
-    given = list(islice(rows, MOST_VARIANTS + 1))
-    if len(given) > MOST_VARIANTS:
-        rule = f"a table must have at most {MOST_VARIANTS:,} variants, not more"
-        raise UsageError(f"row {given[-1][0]}: {rule}; split it")
     variants: list[Variant] = []
     numbers: dict[str, int] = {}
-    for number, row in given:
+    for number, row in rows:
         try:
+            if len(variants) == MOST_VARIANTS:
+                raise UsageError(f"a table must have at most {MOST_VARIANTS:,} variants, not more; split it")
             variant = _variant(row)
+            name = variant.name.casefold()
+            if name != UNNAMED and numbers.setdefault(name, number) != number:
+                text = f"not {shown(variant.name)} as in row {numbers[name]}; rename a variant"
+                raise UsageError(f"a name must be unique, {text}")
         except UsageError as problem:
             raise UsageError(f"row {number}: {problem}") from None
-        other = numbers.setdefault(variant.name.casefold(), number)
-        if other != number and variant.name != UNNAMED:
-            text = f"a name must be unique, not {shown(variant.name)} as in row {other}; rename a variant"
-            raise UsageError(f"row {number}: {text}")
         variants.append(variant)
-    taken = dict.fromkeys(numbers.keys() - {UNNAMED}, 1)
+    taken = dict.fromkeys(numbers, 1)
     varying = _varying([variant.settings for variant in variants])
     for place, variant in enumerate(variants):
         if variant.name == UNNAMED:
@@ -170,14 +168,11 @@ def _varying(settings: Sequence[Mapping[str, object]]) -> dict[str, int]:
 
     All keys if there are none.
     """
-    values: dict[str, set[str]] = {}
-    counts: Counter[str] = Counter()
-    for row in settings:
-        counts.update(row.keys())
-        for key, value in row.items():
-            values.setdefault(key, set()).add(repr(value))
-    varying = [key for key in values if len(values[key]) > 1 or counts[key] < len(settings)]
-    return {key: place for place, key in enumerate(varying or values)}
+    counts = Counter((key, repr(value)) for row in settings for key, value in row.items())
+    keys = dict.fromkeys(key for key, _ in counts)
+    same = {key for (key, _), count in counts.items() if count == len(settings)}
+    varying = [key for key in keys if key not in same] or keys
+    return {key: place for place, key in enumerate(varying)}
 
 
 def _label(settings: Mapping[str, object], varying: Mapping[str, int], number: int) -> str:
@@ -229,6 +224,10 @@ class Result(NamedTuple):
     seconds: float = 0.0
     tier: Tier | None = None
     was_made: bool = True
+
+    def __reduce__(self) -> tuple[type[Result], tuple[object, ...]]:
+        # A read-only mapping cannot be pickled.
+        return Result, (self.name, dict(self.settings), *self[2:])
 
 
 TABLE_BEGINS: Final = b"name,path,"
@@ -382,15 +381,14 @@ def read_variants(path: str | PathLike[str]) -> tuple[Variant, ...]:
     such file, UsageError for another suffix.
     """
     source = Path(path)
-    if source.suffix.lower() not in (".csv", ".json"):
+    rows_of = {".csv": _csv_rows, ".json": _json_rows}.get(source.suffix.lower())
+    if rows_of is None:
         raise UsageError(
             "a table of variants must be a file that ends in .csv or .json, not"
             f" {brief(source.name)}; rename it"
         )
-    data = read_bytes(source, LARGEST_TABLE)
-    rows = _csv_rows if source.suffix.lower() == ".csv" else _json_rows
     try:
-        variants = _named(rows(data, source.name))
+        variants = _named(rows_of(read_bytes(source, LARGEST_TABLE), source.name))
     except UsageError as problem:
         raise InputError(f"{source.name}, {problem}") from None
     if not variants:

@@ -99,8 +99,8 @@ def recognized(path: Path, formats: Sequence[Format]) -> Format | None:
         return named
     head = read_head(path)
     # The format of the suffix comes before others that begin so, too.
-    fitting = [each for each in formats if head and each.begins is not None and each.begins(head)]
-    return named if named in fitting else next(iter(fitting), named)
+    likely = formats if named is None else [named, *formats]
+    return next((each for each in likely if head and each.begins is not None and each.begins(head)), named)
 
 
 def suffix_rule(path: Path, suffixes: Sequence[str]) -> str:

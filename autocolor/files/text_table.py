@@ -165,6 +165,9 @@ def value_of_text(text: str) -> Any:
         return text
     if text.lower() in ("true", "false"):
         return text.lower() == "true"
+    if text[0].isalpha() and not text.startswith(("true", "false", "inf", "nan")):
+        # A name, such as that of a color, is no TOML value.
+        return text
     value: Any
     if POINTED.fullmatch(text):
         value = float(text)

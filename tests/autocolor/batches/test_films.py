@@ -240,8 +240,8 @@ def test_an_existing_file_is_refused_before_anything_is_rendered_unless_it_may_b
 
 
 REFUSED: list[tuple[str, dict[str, Any], str]] = [
-    ("film.mp4", {}, "must be written to .webp, .apng, .gif, frame-{number:04}.png or .ramtek, not to"),
-    ("film.png", {}, "numbered pictures must have a pattern such as frame-{number:04}.png, not"),
+    ("film.mp4", {}, "or numbered pictures such as frame-{number:04}.png, not to"),
+    ("film.png", {}, "an animation must be written to .webp, .apng, .gif, .ramtek, or numbered pictures"),
     ("film.gif", {"fps": 60}, "frames per second must be a number from 0.1 to 50, not 60"),
     ("film.webp", {"fps": "24"}, "per second must be a number from 0.1 to 100, not '24'"),
     ("film.ramtek", {"smooth": 2}, "a stream must have smooth=1, because a display cannot average"),

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import itertools
 import pickle
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -10,11 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Picture, Scene, Variant, View, grid, image, render, scene_of
-from autocolor.batches import runs
-from autocolor.batches.outputs import FORMS, marked
-from autocolor.batches.runs import Drawing, Start, VariantTask, make, make_run, runs_of, tier_of
-from autocolor.batches.sheet import Box
-from autocolor.batches.table import variants_of
+from autocolor.batches import making
+from autocolor.batches.making import Drawing, Start, made_of, make_run, runs_of, tier_of
+from autocolor.batches.outputs import FORMS, Box, mark_of, marked
+from autocolor.batches.table import Result, variants_of
 from autocolor.files.settings import scene_with
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import Tier
@@ -34,6 +34,16 @@ SETTINGS = st.fixed_dictionaries(
     },
 )
 SMALL = Drawing(12, 16, 1, "array", None, None, 1.0)
+VARIANT = Variant("a", {"background": "red"})
+
+
+def start_of(scene: Scene, picture: Picture | None = None, drawing: Drawing = SMALL) -> Start:
+    return Start(scene, picture, drawing, "")
+
+
+def made(start: Start, *settings: Mapping[str, object]) -> list[Result]:
+    """The results of variants with some settings."""
+    return [each.result for each in made_of(start, enumerate(Variant("a", each) for each in settings))]
 
 
 def alone(scene: Scene, drawing: Drawing = SMALL) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
@@ -48,15 +58,13 @@ def test_each_picture_of_a_run_is_that_of_its_scene_rendered_alone(
     drawing = SMALL._replace(smooth=smooth)
     scene = wall_scene()
     picture = render(scene, (16, 12), smooth=smooth) if has_picture else None
-    tasks = [VariantTask(number, settings, "") for number, settings in enumerate(variants)]
-    results = make_run(Start(scene, picture), drawing, tasks)
-    assert [made.number for made in results] == list(range(len(variants)))
+    results = made(start_of(scene, picture, drawing), *variants)
     scenes = [scene_with(scene, settings) for settings in variants]
-    for made, edited in zip(results, scenes, strict=True):
-        assert made.problem == ""
-        assert np.array_equal(made.image, alone(edited, drawing))  # type: ignore[arg-type]
+    for result, edited in zip(results, scenes, strict=True):
+        assert result.problem == ""
+        assert np.array_equal(result.image, alone(edited, drawing))  # type: ignore[arg-type]
     if not has_picture:
-        tiers = [made.tier for made in results]
+        tiers = [result.tier for result in results]
         assert tiers == [Tier.FRAME, *(cost_of_edit(one, other) for one, other in pairwise(scenes))]
 
 
@@ -65,7 +73,7 @@ class Counted:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.renderings = self.frames = 0
-        monkeypatch.setattr(runs, "rendering", self)
+        monkeypatch.setattr(making, "rendering", self)
 
     def __call__(self, scene: Scene, lines: int, elements: int, before: Rendering | None) -> Rendering:
         rendered = rendering(scene, lines, elements, before)
@@ -79,13 +87,10 @@ def test_light_moves_see_the_points_once_and_recolorings_of_a_picture_render_not
 ) -> None:
     counted = Counted(monkeypatch)
     scene = wall_scene()
-    moves = [VariantTask(n, {"lights.key.position": [n, -3, 1]}, "") for n in range(5)]
-    make_run(Start(scene, None), SMALL, moves)
+    made(start_of(scene), *({"lights.key.position": [n, -3, 1]} for n in range(5)))
     assert (counted.renderings, counted.frames) == (5, 1)
-    paints = [
-        VariantTask(n, {"surfaces.wall.object_color": [n, n, n], "mapping": "gamma"}, "") for n in range(5)
-    ]
-    make_run(Start(scene, render(scene, (16, 12))), SMALL, paints)
+    paints = ({"surfaces.wall.object_color": [n, n, n], "mapping": "gamma"} for n in range(5))
+    made(start_of(scene, render(scene, (16, 12))), *paints)
     assert (counted.renderings, counted.frames) == (5, 1)
 
 
@@ -94,72 +99,72 @@ def test_a_picture_is_rendered_again_only_where_a_variant_changes_the_light(
 ) -> None:
     counted = Counted(monkeypatch)
     scene = wall_scene()
-    start = Start(scene, render(scene, (16, 12)))
-    settings: list[dict[str, object]] = [{}, {"ambient": 0.5}, {"ambient": 0.6}, {"background": "red"}]
-    made = [make(start, SMALL, VariantTask(n, each, "")) for n, each in enumerate(settings)]
+    start = start_of(scene, render(scene, (16, 12)))
+    results = made(start, {}, {"ambient": 0.5}, {"ambient": 0.6}, {"background": "red"})
     assert (counted.renderings, counted.frames) == (2, 1)
-    assert [each.tier for each in made] == [None, Tier.FRAME, Tier.MIX, Tier.MIX]
+    assert [each.tier for each in results] == [None, Tier.FRAME, Tier.MIX, Tier.MIX]
 
 
 def test_words_that_stand_for_normals_need_a_rendering_of_a_picture() -> None:
     scene = scene_of(cube(), view=View((3.0, -4.0, 2.0), target=(0.5, 0.5, 0.5)))
     settings = {"words": "normals", "lights.key.position": [2, -3, 4]}
     picture = render(scene_with(scene, {**settings, "words": "levels"}), (16, 12))
-    start = Start(scene_with(scene, {**settings, "words": "levels"}), picture)
-    made = make(start, SMALL, VariantTask(0, {"words": "normals"}, ""))
-    assert np.array_equal(made.image, alone(scene_with(scene, settings)))  # type: ignore[arg-type]
-    assert made.tier is Tier.FRAME
+    (result,) = made(
+        start_of(scene_with(scene, {**settings, "words": "levels"}), picture), {"words": "normals"}
+    )
+    assert np.array_equal(result.image, alone(scene_with(scene, settings)))  # type: ignore[arg-type]
+    assert result.tier is Tier.FRAME
 
 
 def test_a_wrong_variant_has_its_problem_and_loses_no_other() -> None:
-    tasks = [
-        VariantTask(0, {"ambient": -1}, ""),
-        VariantTask(1, {"lights.kye.on": False}, ""),
-        VariantTask(2, {"background": "red"}, ""),
-        VariantTask(3, {"lights.key.intensity": 1e38, "surfaces.wall.diffuse": 1e38}, ""),
-        VariantTask(4, {"ambient": None}, ""),
+    settings: list[dict[str, object]] = [
+        {"ambient": -1},
+        {"lights.kye.on": False},
+        {"background": "red"},
+        {"lights.key.intensity": 1e38, "surfaces.wall.diffuse": 1e38},
+        {"ambient": None},
     ]
-    made = make_run(Start(wall_scene(), None), SMALL, tasks)
-    assert [each.image is None for each in made] == [True, True, False, True, True]
-    assert [each.problem.partition(",")[0] for each in made] == [
+    results = made(start_of(wall_scene()), *settings)
+    assert [each.image is None for each in results] == [True, True, False, True, True]
+    assert [each.problem.partition(",")[0] for each in results] == [
         "ambient must be a finite number of at least 0",
         "lights.kye.on: there is no light 'kye'; did you mean 'key'?",
         "",
-        made[3].problem.partition(",")[0],
+        results[3].problem.partition(",")[0],
         "ambient: it must be a finite number of at least 0",
     ]
-    assert "intensity" in made[3].problem
+    assert "intensity" in results[3].problem
 
 
 def test_a_variant_that_exceeds_the_memory_budget_has_a_problem() -> None:
-    made = make(Start(wall_scene(), None), SMALL._replace(limit=1e-9), VariantTask(0, {}, ""))
-    assert made.image is None
-    assert made.problem.startswith("a picture of 16 x 12 pixels must take at most")
+    (result,) = made(start_of(wall_scene(), drawing=SMALL._replace(limit=1e-9)), {})
+    assert result.image is None
+    assert result.problem.startswith("a picture of 16 x 12 pixels must take at most")
 
 
 def test_the_forms_and_thumbnails_are_those_of_the_colors() -> None:
     scene = wall_scene()
     for form in FORMS:
         drawing = SMALL._replace(form=form, level=9, thumbnail=Box(8, 6))
-        made = make(Start(scene, None), drawing, VariantTask(0, {}, "0" * 64))
-        assert made.image == marked(form, alone(scene), 9, "0" * 64)
-        assert made.thumbnail is not None
-        assert made.thumbnail.shape == (6, 8, 3)
+        (each,) = made_of(start_of(scene, drawing=drawing), [(3, VARIANT)])
+        assert each.result.image == marked(
+            form, alone(scene.replace(background="red")), 9, mark_of("", VARIANT)
+        )
+        assert each.thumbnail is not None
+        assert (each.number, each.thumbnail.shape) == (3, (6, 8, 3))
 
 
-def test_a_start_travels_once_to_a_process_without_light_planes() -> None:
+def test_runs_of_a_batch_share_a_start_in_a_process_and_results_travel_back() -> None:
     scene = wall_scene()
-    start = Start(scene, render(scene, (16, 12)))
-    arrived = pickle.loads(pickle.dumps(start))
-    assert arrived is not start
-    assert pickle.loads(pickle.dumps(start)) is arrived
-    assert isinstance(arrived.picture, Picture)
-    assert not arrived.picture.light_planes
-    task = VariantTask(0, {"background": "red"}, "")
-    as_png = SMALL._replace(form="png")
-    assert make(arrived, as_png, task).image == make(start, as_png, task).image
-    other = pickle.loads(pickle.dumps(Start(scene, None)))
-    assert other is not arrived
+    pickled = [pickle.dumps(start_of(each)) for each in (scene, scene.replace(ambient=0.5))]
+    both = [
+        [(0, Variant("a", {"lights.key.position": [0, -3, 1]}))],
+        [(1, Variant("b", {"lights.key.position": [1, -3, 1]}))],
+    ]
+    tiers = [made_run.result.tier for start in pickled for run in both for made_run in make_run(start, run)]
+    assert tiers == [Tier.FRAME, Tier.LIGHT] * 2
+    travelled = pickle.loads(pickle.dumps(make_run(pickled[0], both[0])))
+    assert travelled[0].result.settings == both[0][0][1].settings
 
 
 AXES: dict[str, list[object]] = {
@@ -176,8 +181,8 @@ def test_each_variant_is_in_a_run_and_dear_edits_are_as_rare_as_they_can_be(
     variants: list[Variant], most: int
 ) -> None:
     scene = wall_scene()
-    runs = runs_of(scene, variants, most)
-    order = [number for run in runs for number in run]
+    runs = runs_of(scene, list(enumerate(variants)), most)
+    order = [number for run in runs for number, _ in run]
     assert sorted(order) == list(range(len(variants)))
     assert all(1 <= len(run) <= most for run in runs)
     scenes = [scene_with(scene, variants[number].settings) for number in order]
@@ -191,8 +196,8 @@ def test_each_variant_is_in_a_run_and_dear_edits_are_as_rare_as_they_can_be(
 def test_a_run_mixes_frames_only_if_all_of_each_fit(eyes: list[int], most: int) -> None:
     variants = variants_of([{"view.eye": [eye, -4, 0], "ambient": n} for n, eye in enumerate(eyes)])
     of_frame: dict[int, list[int]] = {}
-    for number, run in enumerate(runs_of(wall_scene(), variants, most)):
-        for variant in run:
+    for number, run in enumerate(runs_of(wall_scene(), list(enumerate(variants)), most)):
+        for variant, _ in run:
             of_frame.setdefault(eyes[variant], []).append(number)
     for eye, numbers in of_frame.items():
         assert len(set(numbers)) == -(-eyes.count(eye) // most)
@@ -200,7 +205,8 @@ def test_a_run_mixes_frames_only_if_all_of_each_fit(eyes: list[int], most: int) 
 
 def test_recolorings_stay_in_the_order_of_their_table() -> None:
     variants = variants_of([{"surfaces.wall.blend": blend} for blend in (0.5, 0.1, 0.9, 0.1)])
-    assert runs_of(wall_scene(), variants, 3) == [[0, 1, 2], [3]]
+    numbered = list(enumerate(variants))
+    assert runs_of(wall_scene(), numbered, 3) == [numbered[:3], numbered[3:]]
 
 
 def test_the_tier_of_a_key_is_that_of_its_column() -> None:
@@ -212,7 +218,7 @@ def test_the_tier_of_a_key_is_that_of_its_column() -> None:
         "lights.key.position": Tier.LIGHT,
         "lights.key.flaps.x.minimum": Tier.LIGHT,
         "view.eye": Tier.FRAME,
-        "surfaces.wal.blend": Tier.NOTHING,
+        "lights.key.flaps.x": Tier.LIGHT,
         "surfaces.wall.blnd": Tier.NOTHING,
     }
     assert {key: tier_of(scene, key) for key in tiers} == tiers

@@ -11,15 +11,16 @@ from PIL import Image
 
 from autocolor import UsageError, grid
 from autocolor.arrays import light_of
-from autocolor.batches.sheet import (
+from autocolor.batches.outputs import (
     BOXES,
     GAP,
     GROUND,
     NO_PICTURE,
     Box,
-    ContactSheet,
+    box_of,
     columns_of,
     read_thumbnail,
+    sheet_png,
     thumbnail,
 )
 from autocolor.batches.table import variants_of
@@ -35,7 +36,7 @@ def test_a_thumbnail_fits_and_each_pixel_is_the_mean_light_of_a_square(
     small = thumbnail(colors, box)
     assert small.shape[0] <= box.lines
     assert small.shape[1] <= box.elements
-    side = max(1, -(-lines // box.lines), -(-elements // box.elements))
+    side = min(max(1, -(-lines // box.lines), -(-elements // box.elements)), lines, elements)
     light = light_of(colors.astype(np.float64))
     for line, element in np.ndindex(small.shape[:2]):
         square = light[line * side : (line + 1) * side, element * side : (element + 1) * side]
@@ -60,14 +61,10 @@ def test_a_sheet_has_the_shape_of_a_grid_else_it_is_nearly_square() -> None:
 
 
 def test_a_sheet_has_each_thumbnail_in_its_cell_and_a_label_below() -> None:
-    sheet = ContactSheet(grid({"a": [1, 2], "b": ["a name too long for a cell of so few pixels" * 3, "x"]}))
-    box = sheet.box
+    variants = grid({"a": [1, 2], "b": ["a name too long for a cell of so few pixels" * 3, "x"]})
+    box = box_of(variants)
     colors = np.full((box.lines, box.elements, 3), 200, np.uint8)
-    sheet.put(3, colors)
-    small = colors[:11, :20]
-    sheet.put(1, small)
-    sheet.put(0, None)
-    field = np.asarray(Image.open(BytesIO(sheet.png())))
+    field = np.asarray(Image.open(BytesIO(sheet_png(variants, {3: colors, 1: colors[:11, :20], 0: None}))))
     step = (field.shape[0] - GAP) // 2, (field.shape[1] - GAP) // 2
     corners = [(GAP + row * step[0], GAP + column * step[1]) for row in range(2) for column in range(2)]
     cells = [field[top : top + box.lines, left : left + box.elements] for top, left in corners]
@@ -87,28 +84,29 @@ def test_a_sheet_has_each_thumbnail_in_its_cell_and_a_label_below() -> None:
 
 def test_a_sheet_has_the_columns_that_it_is_given() -> None:
     rows = grid({"a": range(24), "b": range(3)})
-    box, labels = ContactSheet(rows, 12).box, 16
-    with Image.open(BytesIO(ContactSheet(rows, 12).png())) as sheet:
+    box, labels = box_of(rows, 12), 16
+    with Image.open(BytesIO(sheet_png(rows, {}, 12))) as sheet:
         assert sheet.size == (12 * (box.elements + GAP) + GAP, 6 * (box.lines + labels + GAP) + GAP)
-    with Image.open(BytesIO(ContactSheet(rows[:2], 100).png())) as sheet:
+    with Image.open(BytesIO(sheet_png(rows[:2], {}, 100))) as sheet:
         assert sheet.width == 2 * (box.elements + GAP) + GAP
     for wrong in (0, 101, True, "3"):
         with pytest.raises(UsageError, match="the columns of a sheet must be a whole number from 1 to 100"):
-            ContactSheet(rows, wrong)  # type: ignore[arg-type]
+            box_of(rows, wrong)  # type: ignore[arg-type]
 
 
 def test_a_sheet_of_many_variants_has_smaller_thumbnails_and_of_too_many_is_refused() -> None:
-    assert ContactSheet(grid({"a": range(401)})).box == BOXES[1][1]
+    assert box_of(grid({"a": range(401)})) == BOXES[1][1]
     with pytest.raises(UsageError, match=r"at most 10,000 variants, not 10,001; make sheets of parts"):
-        ContactSheet(grid({"a": range(10_001)}))
+        box_of(grid({"a": range(10_001)}))
 
 
-def test_the_thumbnail_of_a_file_is_that_of_its_colors(tmp_path: Path) -> None:
+def test_the_thumbnail_of_a_file_is_that_of_its_colors(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     colors = np.random.default_rng(1).integers(0, 256, (30, 40, 3), np.uint8)
     save_png(colors, tmp_path / "a.png")
     small = read_thumbnail(str(tmp_path / "a.png"), Box(20, 20))
     assert small is not None
     assert (small == thumbnail(colors, Box(20, 20))).all()
-    (tmp_path / "b.png").write_bytes((tmp_path / "a.png").read_bytes()[:200])
-    assert read_thumbnail(str(tmp_path / "b.png"), Box(20, 20)) is None
-    assert read_thumbnail(str(tmp_path / "c.png"), Box(20, 20)) is None
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 30 * 40 // 2 - 1)
+    assert read_thumbnail(str(tmp_path / "a.png"), Box(20, 20)) is None

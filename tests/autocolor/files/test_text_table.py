@@ -131,7 +131,8 @@ test_what_is_refused = refused(
         *((text, 0.5) for text in (".5", "5.00E-01", "50.e-2")),
         *((text, 64) for text in ("64.0", "64.", "6.4e1")),
         ("[1, 2.5]", [1, 2.5]),
-        *((text, text) for text in ("#b01020", "WAHR", "1,5", "", "1_", ".", "1\n2", "\udcff")),
+        *((text, float("inf")) for text in ("inf", "inf # most")),
+        *((text, text) for text in ("#b01020", "WAHR", "infinite", "1,5", "", "1_", ".", "1\n2", "\udcff")),
     ],
 )
 def test_the_value_of_a_text(text: str, value: Any) -> None:
