@@ -31,7 +31,7 @@ def _show_formats(context: click.Context, _: click.Parameter, is_given: bool) ->
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options()
 @click.argument("out", type=click.Path())
 @click.option(
     "--to",
@@ -47,8 +47,7 @@ def _show_formats(context: click.Context, _: click.Parameter, is_given: bool) ->
     callback=_show_formats,
     help="List the formats that are read and written, and exit.",
 )
-@click.pass_context
-def convert(context: click.Context, source: SceneSource, out: str, to: str | None, force: bool) -> None:
+def convert(source: SceneSource, out: str, to: str | None, force: bool) -> int:
     """Write SCENE, a mesh or a whole scene, to OUT; the ending of OUT determines the format.
 
     Without an ending, OUT becomes a scene folder. Anything that OUT's format cannot hold is left out and
@@ -72,7 +71,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     for phrase in lost:
         tell(f"autocolor: {path.name}: left out, as {output.name} cannot hold it: {phrase}")
     tell_written(*map(str, written))
-    context.exit(REPAIRED if source.strict and lost else ended(report, source))
+    return REPAIRED if source.strict and lost else ended(report, source)
 
 
 def format_lines() -> list[str]:

@@ -25,10 +25,9 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options()
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.pass_context
-def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
+def info(source: SceneSource, as_json: bool) -> int:
     """Print the nodes, polygons, scalars, parts, surfaces, lights, view and intensities of SCENE."""
     report = read(source)
     tell_up(report, source)
@@ -37,7 +36,7 @@ def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
         click.echo(json.dumps(facts, indent=2))
     else:
         tell(*lines_of(facts), err=False)
-    context.exit(ended(report, source))
+    return ended(report, source)
 
 
 def facts_of(report: SceneReport) -> dict[str, Any]:

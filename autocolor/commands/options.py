@@ -1,5 +1,6 @@
-"""Options that several commands share, such as `--normals`, `--paper`, `--hold-exposure` and `--size`.
+"""Options that several commands share, such as `--paints`, `--size`, `--smooth` and `--limit`.
 
+The options for SCENE are those of `scenes`.
 An invalid value of an option is a UsageError, not an InputError.
 """
 
@@ -18,8 +19,6 @@ from ramtek_emu.command_line import tell
 if TYPE_CHECKING:
     from logging import LogRecord
 
-    from autocolor.lighting.picture import Picture
-    from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
 
 
@@ -30,48 +29,6 @@ def as_usage(place: str = "") -> Iterator[None]:
         yield
     except InputError as error:
         raise UsageError(f"{place}{problem}" for problem in error.problems) from None
-
-
-normals_option = click.option(
-    "--normals",
-    is_flag=True,
-    help="Let words stand for normals: changing a light is then fast. Lights and eye count as far away.",
-)
-
-
-def with_normals(scene: Scene, normals: bool) -> Scene:
-    """The scene, in which words stand for normals if `normals`.
-
-    Raises UsageError if a scalar colors its surfaces.
-    """
-    if not normals:
-        return scene
-    with as_usage("--normals: "):
-        return scene.replace(words="normals")
-
-
-paper_option = click.option(
-    "--paper",
-    is_flag=True,
-    help="Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
-    " maximum, no smooth edges.",
-)
-
-
-hold_option = click.option(
-    "--hold-exposure",
-    is_flag=True,
-    help="Hold the exposure that SCENE has without other options, so that less light is darker.",
-)
-
-
-def with_held_exposure(scene: Scene, picture: Picture) -> Scene:
-    """The scene with the exposure that its picture has."""
-    from autocolor.images import display_image
-    from autocolor.mapping.intensity import held_exposure, stage_surfaces
-
-    mapped = display_image(scene, picture).mapped
-    return scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure, stage_surfaces(scene)))
 
 
 paints_option = click.option(
@@ -102,6 +59,15 @@ def _size(_context: click.Context, _parameter: click.Parameter, text: str) -> tu
         return size_of(text)
     except UsageError as error:
         raise click.BadParameter(str(error)) from None
+
+
+recover_option = click.option(
+    "--recover",
+    is_flag=False,
+    flag_value="newest",
+    metavar="[SESSION]",
+    help="Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
+)
 
 
 size_option = click.option(
@@ -153,22 +119,25 @@ limit_option = click.option(
 """`--limit` of the commands that read files."""
 
 VERBOSITY: Final = "autocolor.verbosity"
-"""The key of a click context for the number of `-v`."""
-
-PRINTER: Final = "autocolor.printer"
-"""The key of a click context whose log is printed."""
+"""The key of a click context for the number of `-v`; it is there if the log is printed."""
 
 
-def print_log(context: click.Context) -> None:
-    """Print log records on stderr until the command ends: warnings, and what `-v` asks for."""
+def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
+    """Print log records on stderr until the command ends: warnings, and what `-v` asks for.
+
+    `-v` may be given before the command and after it.
+    """
+    is_before_command = context.parent is None
+    if context.resilient_parsing or (is_before_command and not count):
+        return
     import logging
 
     logger = logging.getLogger("autocolor")
-    verbosity = context.meta.get(VERBOSITY, 0)
+    is_printed = VERBOSITY in context.meta
+    verbosity = context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
     logger.setLevel((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbosity, 2)])
-    if PRINTER in context.meta:
+    if is_printed:
         return
-    context.meta[PRINTER] = True
 
     class Printer(logging.Handler):
         """Prints records on stderr, like all messages of a command."""
@@ -184,13 +153,6 @@ def print_log(context: click.Context) -> None:
         logger.setLevel(logging.NOTSET)
 
     context.find_root().call_on_close(stop)
-
-
-def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
-    """Print log records until the command ends, if `-v` was given before the command or after it."""
-    if count and not context.resilient_parsing:
-        context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
-        print_log(context)
 
 
 verbose_option = click.option(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
+from autocolor.commands.completion import complete_colors, complete_surfaces
 from autocolor.commands.options import as_usage, limit_option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import set_option
@@ -30,7 +30,7 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("picture", type=click.Path(), shell_complete=complete_pictures)
+@click.argument("picture", type=click.Path())
 @click.argument("surface", required=False, shell_complete=complete_surfaces)
 @click.option(
     "--object",
@@ -56,6 +56,7 @@ Examples:
 )
 @click.option(
     "--percentage",
+    "light_percentage",
     type=float,
     metavar="PERCENT",
     help="Share of the light color at the highest level, 0 to 100.",
@@ -89,16 +90,12 @@ Examples:
 def recolor(
     picture: str,
     surface: str | None,
-    object_color: str | None,
-    light_color: str | None,
-    blend: float | None,
-    percentage: float | None,
-    ramp: str | None,
     palette: str | None,
     settings: tuple[str, ...],
     output: str | None,
     save: str | None,
     force: bool,
+    **colors: Any,
 ) -> None:
     """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again.
 
@@ -107,14 +104,7 @@ def recolor(
     --set changes any field that needs no rendering: paints, the mapping, and the color scale, limits and
     bands of a scalar.
     """
-    changes: dict[str, Any] = {
-        "object_color": object_color,
-        "light_color": light_color,
-        "blend": blend,
-        "light_percentage": percentage,
-        "ramp": ramp,
-    }
-    given = {name: value for name, value in changes.items() if value is not None}
+    given = {name: value for name, value in colors.items() if value is not None}
     if surface is None and (given or palette is not None or not settings):
         raise UsageError(
             "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE"
@@ -124,7 +114,7 @@ def recolor(
         from autocolor.files.paths import file_stem
 
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
-    refuse_outputs(output, save, force)
+    refuse_outputs({"-o": output, "--save": save}, force)
     if palette is not None:
         if given:
             raise UsageError("--palette gives all colors of a surface; leave the other options of colors out")

@@ -1,4 +1,4 @@
-"""Scenes of commands: options for reading, messages about repairs, created views and lights, exit codes."""
+"""SCENE of the commands: its options, reading and editing, created views and lights, exit codes."""
 
 from __future__ import annotations
 
@@ -10,13 +10,22 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import click
 from click.core import ParameterSource
 
-from autocolor.commands.completion import complete_scenes, complete_settings
-from autocolor.commands.options import limit_option, print_log, verbose_option
+from autocolor.commands.completion import complete_settings, complete_views
+from autocolor.commands.options import (
+    as_usage,
+    limit_option,
+    size_option,
+    smooth_of,
+    smooth_option,
+    verbose_option,
+)
 from autocolor.errors import UsageError
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
+    from autocolor.journal.history import History
+    from autocolor.lighting.picture import Picture
     from autocolor.scene.creation import SurfaceSource
     from autocolor.scene.scene import Scene
 
@@ -25,70 +34,39 @@ REPAIRED: Final = 1
 
 
 class SceneSource(NamedTuple):
-    """The path of a scene, and how to read it: the values of `scene_options`."""
+    """What a command line asks of SCENE: the values of `scene_options`, or the defaults of those left out."""
 
-    path: str
+    scene: str | None
     up: str = "z"
     surfaces: SurfaceSource = "materials"
     strict: bool = False
     scale: float = 1.0
+    settings: tuple[str, ...] = ()
+    normals: bool = False
+    paper: bool = False
+    view: str | None = None
+    size: tuple[int, int] = (640, 480)
+    smooth: str | None = None
+    hold_exposure: bool = False
+    given: frozenset[str] = frozenset()
+    """The names of the values that the user gave."""
 
+    @property
+    def path(self) -> str:
+        """The path of the scene; "" without one."""
+        return self.scene or ""
 
-def scene_options(command: Callable[..., Any], required: bool = True) -> Callable[..., Any]:
-    """A decorator that adds the argument and options of commands that read a scene.
+    @property
+    def samples(self) -> int:
+        """The smoothness of a picture of the scene."""
+        return smooth_of(self.smooth, self.size)
 
-    The command gets them as its argument `source`, a SceneSource. It is None if the command line has no
-    scene, which is an error if `required`.
-    """
+    def rendered(self, scene: Scene) -> Picture:
+        """The picture of a scene in the size and the smoothness that are asked for."""
+        from autocolor.rendering import render
 
-    @wraps(command)
-    def with_source(
-        *arguments: Any,
-        scene: str | None,
-        up: str,
-        scale: float,
-        surfaces: SurfaceSource,
-        strict: bool,
-        **options: Any,
-    ) -> Any:
-        for option, is_given in (("--up", up != "z"), ("--scale", scale != 1)):
-            if scene is None and is_given:
-                raise UsageError(
-                    f"{option} must come with a mesh file as SCENE; name a file, or leave {option} out"
-                )
-        source = None if scene is None else SceneSource(scene, up, surfaces, strict, scale)
-        return command(*arguments, source=source, **options)
-
-    decorated: Callable[..., Any] = with_source
-    for decorate in (
-        verbose_option,
-        limit_option,
-        click.option("--strict", is_flag=True, help="Exit with code 1 if input was repaired or skipped."),
-        click.option(
-            "--up",
-            type=click.Choice(["x", "y", "z"]),
-            default="z",
-            show_default=True,
-            help="Up axis of a mesh file; a scene file has its own.",
-        ),
-        click.option(
-            "--scale",
-            type=float,
-            default=1.0,
-            metavar="FACTOR",
-            help="Factor for the coordinates of a mesh file, such as 0.001 for millimeters.",
-        ),
-        click.option(
-            "--surfaces",
-            type=click.Choice(["materials", "parts"]),
-            default="materials",
-            show_default=True,
-            help="Create a missing surface for each material of the mesh, or for each part.",
-        ),
-        click.argument("scene", type=click.Path(), required=required, shell_complete=complete_scenes),
-    ):
-        decorated = decorate(decorated)
-    return decorated
+        elements, lines = self.size
+        return render(scene, lines, elements, smooth=self.samples)
 
 
 set_option = click.option(
@@ -101,37 +79,118 @@ set_option = click.option(
     " none unsets a field; repeatable.",
 )
 
+READING: Final = (
+    click.option(
+        "--surfaces",
+        type=click.Choice(["materials", "parts"]),
+        default="materials",
+        show_default=True,
+        help="Create a missing surface for each material of the mesh, or for each part.",
+    ),
+    click.option(
+        "--scale",
+        type=float,
+        default=1.0,
+        metavar="FACTOR",
+        help="Factor for the coordinates of a mesh file, such as 0.001 for millimeters.",
+    ),
+    click.option(
+        "--up",
+        type=click.Choice(["x", "y", "z"]),
+        default="z",
+        show_default=True,
+        help="Up axis of a mesh file; a scene file has its own.",
+    ),
+    click.option("--strict", is_flag=True, help="Exit with code 1 if input was repaired or skipped."),
+    limit_option,
+    verbose_option,
+)
+"""The options of all commands that read a scene."""
 
-def read(source: SceneSource | None) -> SceneReport:
-    """Read a scene, by default the built-in demo; print a line on stderr for each repair and each warning."""
-    if context := click.get_current_context(silent=True):
-        print_log(context)
-    if source is None:
+PICTURES: Final = {
+    "settings": set_option,
+    "normals": click.option(
+        "--normals",
+        is_flag=True,
+        help="Let words stand for normals: changing a light is then fast. Lights and eye count as far away.",
+    ),
+    "paper": click.option(
+        "--paper",
+        is_flag=True,
+        help="Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
+        " maximum, no smooth edges.",
+    ),
+    "view": click.option(
+        "--view", metavar="NAME", shell_complete=complete_views, help="Render a named view of the scene."
+    ),
+    "size": size_option,
+    "smooth": smooth_option,
+    "hold_exposure": click.option(
+        "--hold-exposure",
+        is_flag=True,
+        help="Hold the exposure that SCENE has without other options, so that less light is darker.",
+    ),
+}
+"""Further options for SCENE, by the field of SceneSource."""
+
+
+def scene_options(*names: str, required: bool = True) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """A decorator that adds the argument SCENE, the options of READING and some of PICTURES to a command.
+
+    The command gets their values as its argument `source`, a SceneSource. Its `scene` is None if the command
+    line has none, which is an error if `required`.
+    """
+    argument = click.argument("scene", type=click.Path(), required=required)
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def with_source(*arguments: Any, **options: Any) -> Any:
+            context = click.get_current_context()
+            given = {
+                name for name in options if context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+            }
+            values = {name: options.pop(name) for name in SceneSource._fields if name in options}
+            source = SceneSource(**values, given=frozenset(given))
+            for name in ("up", "scale"):
+                if source.scene is None and name in given:
+                    rule = f"--{name} must come with a mesh file as SCENE"
+                    raise UsageError(f"{rule}; name a file, or leave --{name} out")
+            return command(*arguments, source=source, **options)
+
+        decorated: Callable[..., Any] = with_source
+        for add in reversed([argument, *READING, *(PICTURES[name] for name in names)]):
+            decorated = add(decorated)
+        return decorated
+
+    return decorate
+
+
+def read(source: SceneSource) -> SceneReport:
+    """Read a scene, by default the built-in demo; print a line on stderr for each repair."""
+    if source.scene is None:
         from autocolor.commands.demo import demo_report
 
         return demo_report()
     from autocolor.files.opening import read_scene_with_report
 
-    report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
+    report = read_scene_with_report(source.scene, up=source.up, scale=source.scale, surfaces=source.surfaces)
     tell(*(f"autocolor: {repair}" for repair in report.repairs))
     return report
 
 
-def tell_up(report: SceneReport, source: SceneSource | None) -> None:
+def tell_up(report: SceneReport, source: SceneSource) -> None:
     """Print a line on stderr if the mesh seems to lie on its side, unless the user gave `--up`."""
     from autocolor.files.opening import hinted_up
 
-    context = click.get_current_context(silent=True)
-    is_given = context is not None and context.get_parameter_source("up") is ParameterSource.COMMANDLINE
-    if source is None:
+    if source.scene is None or "up" in source.given:
         return
-    if up := "" if is_given else hinted_up(source.path, report.scene.mesh):
-        tell(f"autocolor: {source.path} seems to lie on its side; try --up {up}, or give --up z")
+    if up := hinted_up(source.scene, report.scene.mesh):
+        tell(f"autocolor: {source.scene} seems to lie on its side; try --up {up}, or give --up z")
 
 
-def ended(report: SceneReport, source: SceneSource | None) -> int:
+def ended(report: SceneReport, source: SceneSource) -> int:
     """The exit code of a command that succeeded."""
-    return REPAIRED if source is not None and source.strict and report.repairs else 0
+    return REPAIRED if source.strict and report.repairs else 0
 
 
 def reframed(report: SceneReport, aspect: float) -> SceneReport:
@@ -146,41 +205,65 @@ def reframed(report: SceneReport, aspect: float) -> SceneReport:
     return dataclasses.replace(report, scene=scene.replace(view=view))
 
 
-def read_edited(
-    source: SceneSource | None,
-    settings: tuple[str, ...],
-    size: tuple[int, int],
-    prepared: Callable[[Scene], Scene] = lambda scene: scene,
-) -> tuple[Scene, SceneReport]:
-    """The scene of a source with `--set`, for pictures of a size, and the report of what was read.
+def read_edited(source: SceneSource) -> tuple[Scene, SceneReport]:
+    """The scene of a source with all that is asked of it, and the report of what was read."""
+    report = reframed(read(source), source.size[0] / source.size[1])
+    tell_up(report, source)
+    return edited(report, source), report
 
-    The scene is `prepared` before it is edited.
-    """
+
+def edited(report: SceneReport, source: SceneSource) -> Scene:
+    """The scene of a report with all that is asked of it. Exposure is held before settings are made."""
     from autocolor.commands.settings import with_settings
 
-    elements, lines = size
-    report = reframed(read(source), elements / lines)
-    tell_up(report, source)
-    edited = with_settings(prepared(report.scene), settings)
-    return created_again(report, edited, elements / lines), report
+    scene = report.scene.as_in_1983() if source.paper else report.scene
+    if source.normals:
+        with as_usage("--normals: "):
+            scene = scene.replace(words="normals")
+    if source.view is not None:
+        scene = scene.with_taken_view(source.view)
+    if source.hold_exposure:
+        scene = with_held_exposure(scene, source.rendered(scene))
+    return created_again(report, with_settings(scene, source.settings), source.size[0] / source.size[1])
 
 
-def created_again(report: SceneReport, edited: Scene, aspect: float | None = None) -> Scene:
+def with_held_exposure(scene: Scene, picture: Picture) -> Scene:
+    """The scene with the exposure that its picture has."""
+    from autocolor.images import display_image
+    from autocolor.mapping.intensity import held_exposure, stage_surfaces
+
+    mapped = display_image(scene, picture).mapped
+    return scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure, stage_surfaces(scene)))
+
+
+def session_of(source: SceneSource) -> tuple[SceneReport, History]:
+    """The report of reading a scene, and a session with it, in which all that is asked of it is a step."""
+    from autocolor.journal.history import History
+    from autocolor.journal.places import Source, place_of
+
+    place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
+    report = read(source)
+    history = History(report.scene, place)
+    scene = edited(report, source)
+    if scene is not report.scene:
+        history.take(scene)
+    return report, history
+
+
+def created_again(report: SceneReport, edited: Scene, aspect: float) -> Scene:
     """The edited scene of a report; if the edits affect its created view or lights, they are created again.
 
     An edit of the view or of `stage` of a part makes a created view frame the object again, unless it sets
-    the eye, the direction or the target. An edit of `stage` makes created lights be created again. `aspect`
-    is the aspect of the picture, by default the display's.
+    the eye, the direction or the target. An edit of `stage` makes created lights be created again.
     """
     from autocolor.scene.defaults import default_lights, framed
-    from autocolor.scene.view import ASPECT
 
     original = report.scene
     is_same_object = [part.stage for part in original.parts] == [part.stage for part in edited.parts]
     before, view = original.view, edited.view
     is_placed = (before.eye, before.direction, before.target) != (view.eye, view.direction, view.target)
     if report.is_view_created and not is_placed and not (is_same_object and before == view):
-        edited = edited.replace(view=framed(view, edited.object_coordinates, aspect or ASPECT))
+        edited = edited.replace(view=framed(view, edited.object_coordinates, aspect))
     if report.are_lights_created and not is_same_object and edited.lights == original.lights:
         edited = edited.replace(lights=default_lights(edited.object_coordinates, edited.view))
     return edited

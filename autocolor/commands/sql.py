@@ -37,7 +37,7 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options()
 @click.argument("statement", required=False)
 @click.option("--write", is_flag=True, help="Allow INSERT, UPDATE and DELETE, and save SCENE.")
 @click.option("--csv", "form", flag_value="csv", help="Print rows as CSV.")
@@ -49,15 +49,7 @@ Examples:
     show_default=True,
     help="Longest time of a statement.",
 )
-@click.pass_context
-def sql(
-    context: click.Context,
-    source: SceneSource,
-    statement: str | None,
-    write: bool,
-    form: str | None,
-    seconds: float,
-) -> None:
+def sql(source: SceneSource, statement: str | None, write: bool, form: str | None, seconds: float) -> int:
     """Run SQL on the tables of SCENE: STATEMENT, or else statements from a prompt or stdin.
 
     SCENE is a store (.sqlite) or any other scene. `.schema` at the prompt shows the tables; docs/STORE.md
@@ -92,7 +84,7 @@ def sql(
                 raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
             for each in filter(None, split(text)):
                 run(each)
-    context.exit(0 if report is None else ended(report, source))
+    return 0 if report is None else ended(report, source)
 
 
 def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, statement: str) -> None:

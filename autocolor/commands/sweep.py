@@ -4,24 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Final
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 import click
-from click.core import ParameterSource
 
 from autocolor.checks import brief
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.options import (
-    hold_option,
-    print_log,
-    size_option,
-    smooth_of,
-    smooth_option,
-    with_held_exposure,
-    with_normals,
-)
 from autocolor.commands.outputs import progress
-from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read_edited, scene_options, set_option
+from autocolor.commands.scenes import (
+    REPAIRED,
+    SceneSource,
+    ended,
+    read_edited,
+    scene_options,
+    with_held_exposure,
+)
 from autocolor.errors import AutocolorError, InputError, UsageError
 from ramtek_emu.command_line import tell
 from ramtek_emu.writing import same_outputs
@@ -73,10 +72,9 @@ jobs_option = click.option(
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options("settings", "size", "smooth", "hold_exposure")
 @vary_option
 @table_option
-@set_option
 @click.option(
     "-o",
     "--output",
@@ -95,7 +93,6 @@ jobs_option = click.option(
 @click.option(
     "--made", type=click.Path(), metavar="CSV", help="Write a table of the pictures and the problems."
 )
-@hold_option
 @jobs_option
 @click.option(
     "--resume",
@@ -103,8 +100,6 @@ jobs_option = click.option(
     help="Go on with a batch that was stopped: skip each picture that is whole and was made from the same"
     " scene and settings, and replace the others.",
 )
-@size_option
-@smooth_option
 @click.option(
     "--level",
     type=click.IntRange(0, 9),
@@ -112,25 +107,19 @@ jobs_option = click.option(
     help="Compression of PNG files: 0 is the fastest, 9 the smallest.",
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
-@click.pass_context
 def sweep(
-    context: click.Context,
     source: SceneSource,
     varies: tuple[str, ...],
     table: str | None,
-    settings: tuple[str, ...],
     output: str,
     sheet: str | None,
     columns: int | None,
     made: str | None,
-    hold_exposure: bool,
     jobs: int,
     resume: bool,
-    size: tuple[int, int],
-    smooth: str | None,
     level: int | None,
     force: bool,
-) -> None:
+) -> int:
     """Make a picture of each variant of SCENE: a scene, a mesh file or a picture file.
 
     Each picture costs only what its edit changes: recolorings of a picture file render nothing. A variant
@@ -140,7 +129,7 @@ def sweep(
     import warnings
 
     from autocolor.batches.making import VariantWarning, batch
-    from autocolor.batches.table import products, read_variants, varied
+    from autocolor.batches.table import products
 
     if not varies and table is None:
         raise UsageError(
@@ -148,16 +137,9 @@ def sweep(
         )
     if made is not None and any(same_outputs([made, read]) for read in (source.path, table) if read):
         raise UsageError(f"--made must be a file of its own, not {made}, which is read; name another")
-    is_sized = context.get_parameter_source("size") is ParameterSource.COMMANDLINE
-    tables = [] if table is None else [read_variants(table)]
-    tables += [varied(text) for text in varies]
-    samples = smooth_of(smooth, size)
-    start, code = start_of(source, settings, size, samples if hold_exposure else 0)
-    refuse_keys(start, tables, table)
-    tell_paints(start, tables)
+    start, tables, code = started(source, varies, table)
     variants = products(tables)
-    is_picture = isinstance(start, tuple)
-    with warnings.catch_warnings(), progress(len(variants)) as step, workers(jobs) as executor:
+    with warnings.catch_warnings(), progress(len(variants)) as bar, workers(jobs) as executor:
         # Problems are printed as messages of the command.
         warnings.simplefilter("ignore", VariantWarning)
         results = batch(
@@ -165,69 +147,32 @@ def sweep(
             variants,
             output,
             executor=executor,
-            size=size if is_sized or not is_picture else None,
-            smooth=samples if smooth or not is_picture else None,
+            **sizes(source, start),
             level=level,
             overwrite=force,
             resume=resume,
             sheet=sheet,
             columns=columns,
             table=made,
-            progress=lambda _: step(),
+            progress=lambda _: bar.update(1),
         )
-    context.exit(print_counts(results, source.strict) or code)
+    return print_counts(results, source.strict) or code
 
 
-def start_of(
-    source: SceneSource,
-    settings: tuple[str, ...],
-    size: tuple[int, int],
-    hold: int = 0,
-    normals: bool = False,
-) -> tuple[Scene | SavedPicture, int]:
-    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs.
+def started(
+    source: SceneSource, varies: tuple[str, ...], table: str | None
+) -> tuple[Scene | SavedPicture, list[tuple[Variant, ...]], int]:
+    """The start of `start_of`, the variants of `--table` and of each `--vary`, and the exit code.
 
-    With `hold`, the scene has the exposure that it has without `settings`, for a picture that is so smooth.
-    With `normals`, its words stand for normals.
-    """
-    from pathlib import Path
-
-    from autocolor.commands.recolor import recolored
-    from autocolor.files.opening import is_picture
-    from autocolor.files.picture_file import read_picture
-
-    def prepared(scene: Scene) -> Scene:
-        from autocolor.rendering import render
-
-        scene, (elements, lines) = with_normals(scene, normals), size
-        return with_held_exposure(scene, render(scene, lines, elements, smooth=hold)) if hold else scene
-
-    if is_picture(Path(source.path)):
-        if normals:
-            raise UsageError(
-                "--normals is for a scene, not for a picture file, which has no normals; leave it out"
-            )
-        print_log(click.get_current_context())
-        saved = read_picture(source.path)
-        original = with_held_exposure(saved.scene, saved.picture) if hold else saved.scene
-        edited = recolored(original, None, {}, settings) if settings else original
-        return saved._replace(scene=edited), 0
-    scene, report = read_edited(source, settings, size, prepared)
-    return scene, ended(report, source)
-
-
-def scene_in(start: Scene | SavedPicture) -> Scene:
-    """The scene, or the scene of a picture."""
-    return start.scene if isinstance(start, tuple) else start
-
-
-def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], table: str | None) -> None:
-    """Refuse keys that the scene does not have, before anything is made.
-
-    Raises InputError for a key in the table, UsageError for a key of --vary.
+    Keys that the scene does not have are refused, before anything is made: InputError for a key in the table,
+    UsageError for a key of --vary. Paints that variants unset are listed on stderr.
     """
     from autocolor.batches.making import check_keys
+    from autocolor.batches.table import read_variants, varied
 
+    tables = [] if table is None else [read_variants(table)]
+    tables += [varied(text) for text in varies]
+    start, code = start_of(source)
     for number, variants in enumerate(tables):
         try:
             check_keys(scene_in(start), variants)
@@ -235,23 +180,51 @@ def refuse_keys(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]], 
             if table is not None and number == 0:
                 raise InputError(f"{brief(table)}, column {error}") from None
             raise UsageError(f"--vary {error}") from None
+    tell_paints(scene_in(start), tables)
+    return start, tables, code
 
 
-def tell_paints(start: Scene | SavedPicture, tables: list[tuple[Variant, ...]]) -> None:
+def start_of(source: SceneSource) -> tuple[Scene | SavedPicture, int]:
+    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs."""
+    from autocolor.commands.recolor import recolored
+    from autocolor.files.opening import is_picture
+    from autocolor.files.picture_file import read_picture
+
+    if not is_picture(Path(source.path)):
+        scene, report = read_edited(source)
+        return scene, ended(report, source)
+    if source.normals:
+        raise UsageError(
+            "--normals is for a scene, not for a picture file, which has no normals; leave it out"
+        )
+    saved = read_picture(source.path)
+    scene = with_held_exposure(saved.scene, saved.picture) if source.hold_exposure else saved.scene
+    return saved._replace(scene=recolored(scene, None, {}, source.settings)), 0
+
+
+def sizes(source: SceneSource, start: Scene | SavedPicture) -> dict[str, Any]:
+    """The size and the smoothness of pictures; those of a picture file are None if they are not given."""
+    is_scene = not isinstance(start, tuple)
+    return {
+        "size": source.size if is_scene or "size" in source.given else None,
+        "smooth": source.samples if is_scene or source.smooth is not None else None,
+    }
+
+
+def scene_in(start: Scene | SavedPicture) -> Scene:
+    """The scene, or the scene of a picture."""
+    return start.scene if isinstance(start, tuple) else start
+
+
+def tell_paints(scene: Scene, tables: list[tuple[Variant, ...]]) -> None:
     """Print a line for each paint that variants unset, once for all variants."""
-    from autocolor.files.settings import UNSET, scene_with
+    from autocolor.files.settings import scene_with
     from autocolor.scene.scene import unset_paints
 
-    scene = scene_in(start)
-    sentences, checked = dict[str, None](), set[frozenset[str]]()
-    for variant in (variant for table in tables for variant in table):
-        keys = frozenset(key for key, value in variant.settings.items() if value not in (None, UNSET))
-        if keys in checked:
-            # Variants that set the same fields unset the same fields.
-            continue
+    sentences = dict[str, None]()
+    for variant in chain(*tables):
         with suppress(AutocolorError):
             sentences |= dict.fromkeys(unset_paints(scene, scene_with(scene, variant.settings)))
-            checked.add(keys)
     tell(*(f"autocolor: {sentence}" for sentence in sentences))
 
 
