@@ -9,7 +9,7 @@ import click
 
 from autocolor.checks import brief
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.options import as_usage
+from autocolor.commands.options import as_usage, force_option, option
 from autocolor.commands.outputs import progress
 from autocolor.commands.scenes import SceneSource, scene_options
 from autocolor.commands.sweep import jobs_option, scene_in, sizes, started, table_option, workers
@@ -31,50 +31,34 @@ FRAMES: Final = 48
 
 @click.command(epilog=EXAMPLES)
 @scene_options("settings", "normals", "size", "smooth", "hold_exposure")
-@click.option(
-    "--vary",
-    "varies",
+@option(
+    "--vary varies",
+    "KEY=VALUES",
+    "Vary a field over the whole duration: A,B,C, evenly spaced in time. Several --vary run together.",
+    str,
     multiple=True,
-    metavar="KEY=VALUES",
     shell_complete=complete_settings,
-    help="Vary a field over the whole duration: A,B,C, evenly spaced in time. Several --vary run together.",
 )
 @table_option
-@click.option(
+@option(
     "--turn",
-    type=float,
+    "DEGREES",
+    "Turn the eye around the view's target, counterclockwise as seen from above; 360 is a whole round.",
+    float,
     default=0.0,
-    metavar="DEGREES",
-    help="Turn the eye around the view's target, counterclockwise as seen from above; 360 is a whole round.",
 )
-@click.option(
-    "--frames",
-    "count",
-    type=click.IntRange(1, 100_000),
-    default=FRAMES,
-    show_default=True,
-    metavar="N",
-    help="Number of frames.",
-)
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    metavar="FILE",
-    help="File to write: .webp or .apng (lossless), .gif (256 colors a frame), a name pattern for numbered"
+@option("--frames count", "N", "Number of frames.", click.IntRange(1, 100_000), default=FRAMES)
+@option(
+    "-o --output",
+    "FILE",
+    "File to write: .webp or .apng (lossless), .gif (256 colors a frame), a name pattern for numbered"
     " pictures such as {number:04}.png, or .ramtek, a load of the lookup table a frame.",
+    required=True,
 )
-@click.option(
-    "--fps",
-    type=float,
-    default=24.0,
-    show_default=True,
-    metavar="RATE",
-    help="Frames per second of a film.",
-)
+@option("--fps", "RATE", "Frames per second of a film.", float, default=24.0)
 @click.option("--once", is_flag=True, help="Show the film once; otherwise it begins again at its end.")
 @jobs_option
-@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+@force_option
 def animate(
     source: SceneSource,
     varies: tuple[str, ...],

@@ -58,7 +58,7 @@ class AutocolorGroup(CommandGroup):
     cls=AutocolorGroup,
     invoke_without_command=True,
     epilog=EXAMPLES,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
 )
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 @paints_option

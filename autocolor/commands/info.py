@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from autocolor.commands.options import json_option
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options, tell_up
 from ramtek_emu.command_line import tell
 
@@ -26,7 +27,7 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options()
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@json_option
 def info(source: SceneSource, as_json: bool) -> int:
     """Print the nodes, polygons, scalars, parts, surfaces, lights, view and intensities of SCENE."""
     report = read(source)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -22,6 +22,19 @@ if TYPE_CHECKING:
     from autocolor.screens.viewer import Viewer
 
 
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+"""A decorator of the function of a command."""
+
+
+def option(names: str, metavar: str, help: str, type: Any = None, **more: Any) -> Decorator:
+    """An option with a value, by default a path: its names, the name of its value, and its help."""
+    return click.option(*names.split(), metavar=metavar, help=help, type=type or click.Path(), **more)
+
+
+force_option = click.option("--force", is_flag=True, help="Overwrite existing files.")
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
 @contextmanager
 def as_usage(place: str = "") -> Iterator[None]:
     """Raise a UsageError instead of an InputError; the lines of its message begin with `place`."""
@@ -31,11 +44,8 @@ def as_usage(place: str = "") -> Iterator[None]:
         raise UsageError(f"{place}{problem}" for problem in error.problems) from None
 
 
-paints_option = click.option(
-    "--paints",
-    type=click.Path(),
-    metavar="FILE",
-    help="Offer the named paints of a .gpl or .csv file beside the swatches of color mixing.",
+paints_option = option(
+    "--paints", "FILE", "Offer the named paints of a .gpl or .csv file beside the swatches of color mixing."
 )
 
 
@@ -70,13 +80,13 @@ recover_option = click.option(
 )
 
 
-size_option = click.option(
+size_option = option(
     "--size",
-    metavar="ELEMENTSxLINES",
+    "ELEMENTSxLINES",
+    "Width and height of the picture, up to 4096x4096, as on the largest display.",
+    str,
     default="640x480",
-    show_default=True,
     callback=_size,
-    help="Width and height of the picture, up to 4096x4096, as on the largest display.",
 )
 
 
@@ -108,13 +118,13 @@ def _allow(context: click.Context, _: click.Parameter, limit: float | None) -> N
         context.find_root().with_resource(allowing(limit))
 
 
-limit_option = click.option(
+limit_option = option(
     "--limit",
-    type=float,
-    metavar="FACTOR",
+    "FACTOR",
+    "Factor for the memory that files and pictures may take, such as 2 for twice as much.",
+    float,
     expose_value=False,
     callback=_allow,
-    help="Factor for the memory that files and pictures may take, such as 2 for twice as much.",
 )
 """`--limit` of the commands that read files."""
 
@@ -159,6 +169,7 @@ verbose_option = click.option(
     "-v",
     "--verbose",
     count=True,
+    show_default=False,
     expose_value=False,
     is_eager=True,
     callback=_listen,

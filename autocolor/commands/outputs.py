@@ -37,9 +37,16 @@ def refuse_outputs(outputs: Mapping[str, str | None], force: bool) -> None:
     Raises UsageError for a wrong suffix. Raises OutputError if the file exists and `force` is false, or if it
     cannot be created.
     """
+    from autocolor.files.writing import refuse_output
+
     given = {option: path for option, path in outputs.items() if path is not None}
     for option, path in given.items():
-        _refuse(path, force)
+        if path == "-":
+            raise UsageError("an output must be a file, not stdout; name a file")
+        refuse_output(path, overwrite=force)
+        folder = Path(path).parent
+        if not os.access(folder, os.W_OK):
+            raise OutputError(f"an output must be in a writable folder, not {folder}; choose another")
         kind, suffixes = KINDS[option]
         if Path(path).suffix.lower() not in suffixes:
             rule = f"{option} must be the name of {kind}, not {shown(path)}"
@@ -49,23 +56,6 @@ def refuse_outputs(outputs: Mapping[str, str | None], force: bool) -> None:
         raise UsageError(
             f"two outputs must be two files, not {one} and {other}, which are the same; rename one"
         )
-
-
-def _refuse(path: str, force: bool) -> None:
-    if not path:
-        raise UsageError("an output must have a name, not an empty name; name a file")
-    if path == "-":
-        raise UsageError("an output must be a file, not stdout; name a file")
-    from autocolor.files.writing import refuse_output
-
-    folder = Path(path).parent
-    if not os.path.isdir(folder):
-        raise OutputError(
-            f"an output must be in an existing folder, not {folder}; create it or choose another"
-        )
-    refuse_output(path, overwrite=force)
-    if not os.access(folder, os.W_OK):
-        raise OutputError(f"an output must be in a writable folder, not {folder}; choose another")
 
 
 def write_image(path: str, scene: Scene, picture: Picture, force: bool) -> None:

@@ -7,6 +7,7 @@ from typing import Final
 
 import click
 
+from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import progress, tell_written
 from autocolor.commands.scenes import SceneSource, scene_options
 from autocolor.commands.sweep import scene_in, started, table_option, vary_option
@@ -28,8 +29,8 @@ Examples:
 )
 @vary_option
 @table_option
-@click.option("-o", "--output", type=click.Path(), metavar="HTML", help="Page to write. Default: SCENE.html.")
-@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+@option("-o --output", "HTML", "Page to write. Default: SCENE.html.")
+@force_option
 def page(
     source: SceneSource,
     lights: bool,

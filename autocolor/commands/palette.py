@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
 from autocolor.commands.completion import complete_surfaces
+from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, scene_options
 from autocolor.commands.sweep import scene_in, start_of
 from autocolor.errors import UsageError
-
-if TYPE_CHECKING:
-    from autocolor.arrays import Bytes
-    from autocolor.lighting.picture import Picture
-    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:
@@ -30,14 +26,12 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @scene_options("settings")
 @click.argument("surface", shell_complete=complete_surfaces)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    metavar="FILE",
-    help="File to write: a GIMP palette (.gpl) or a table (.csv). Default: SCENE-SURFACE.gpl.",
+@option(
+    "-o --output",
+    "FILE",
+    "File to write: a GIMP palette (.gpl) or a table (.csv). Default: SCENE-SURFACE.gpl.",
 )
-@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+@force_option
 def palette(
     context: click.Context, source: SceneSource, surface: str, output: str | None, force: bool
 ) -> int:
@@ -46,9 +40,11 @@ def palette(
     SCENE may be a picture file, which needs no rendering. Any other scene is rendered in the size of the
     display. With `recolor --palette` the colors become a ramp of the surface.
     """
+    from autocolor.checks import nearest
     from autocolor.files.palette_file import check_palette_path, write_palette
     from autocolor.files.paths import file_stem
     from autocolor.files.writing import refuse_output
+    from autocolor.images import display_image
 
     if output is None:
         output = f"{file_stem(Path(source.path).stem)}-{file_stem(surface)}.gpl"
@@ -60,19 +56,11 @@ def palette(
     # A wrong name is refused before the picture is rendered.
     scene.surface(surface)
     picture = start.picture if isinstance(start, tuple) else source.rendered(scene)
-    write_palette(output, entries_of_surface(scene, picture, surface), overwrite=force)
+    image = display_image(scene, picture)
+    if surface not in image.ranges:
+        raise UsageError(
+            f"surface {surface!r} has no levels, because no part has it{nearest(surface, image.ranges)}"
+        )
+    write_palette(output, image.entries_of(scene.surface(surface)), overwrite=force)
     tell_written(output)
     return code
-
-
-def entries_of_surface(scene: Scene, picture: Picture, name: str) -> Bytes:
-    """The entries of a surface's range, (levels, 3) uint8. Raises UsageError if it has no range."""
-    from autocolor.checks import nearest
-    from autocolor.images import display_image
-
-    image, surface = display_image(scene, picture), scene.surface(name)
-    if name not in image.ranges:
-        raise UsageError(
-            f"surface {name!r} has no levels, because no part has it{nearest(name, image.ranges)}"
-        )
-    return image.entries_of(surface)

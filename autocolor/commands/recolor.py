@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.commands.completion import complete_colors, complete_surfaces
-from autocolor.commands.options import as_usage, limit_option, verbose_option
+from autocolor.commands.options import as_usage, force_option, limit_option, option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import set_option
 from autocolor.errors import InputError, UsageError
@@ -32,59 +32,45 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @click.argument("picture", type=click.Path())
 @click.argument("surface", required=False, shell_complete=complete_surfaces)
-@click.option(
-    "--object",
-    "--object-color",
-    "object_color",
-    metavar="COLOR",
+@option(
+    "--object --object-color object_color",
+    "COLOR",
+    'Object color: "#rrggbb", or a name.',
+    str,
     shell_complete=complete_colors,
-    help='Object color: "#rrggbb", or a name.',
 )
-@click.option(
-    "--source",
-    "--light-color",
-    "light_color",
-    metavar="COLOR",
+@option(
+    "--source --light-color light_color",
+    "COLOR",
+    'Light source color: "#rrggbb", or a name.',
+    str,
     shell_complete=complete_colors,
-    help='Light source color: "#rrggbb", or a name.',
 )
-@click.option(
-    "--blend",
-    type=float,
-    metavar="FRACTION",
-    help="Level above which the light color blends in, 0 to 1; 1 for no blending.",
+@option(
+    "--blend", "FRACTION", "Level above which the light color blends in, 0 to 1; 1 for no blending.", float
 )
-@click.option(
-    "--percentage",
-    "light_percentage",
-    type=float,
-    metavar="PERCENT",
-    help="Share of the light color at the highest level, 0 to 100.",
+@option(
+    "--percentage light_percentage",
+    "PERCENT",
+    "Share of the light color at the highest level, 0 to 100.",
+    float,
 )
-@click.option(
+@option(
     "--ramp",
-    metavar="COLORS",
-    help="Colors at equal distances from the lowest level to the highest, such as #200,#f60,#fff; instead of"
+    "COLORS",
+    "Colors at equal distances from the lowest level to the highest, such as #200,#f60,#fff; instead of"
     " the two colors and their blend.",
+    str,
 )
-@click.option(
+@option(
     "--palette",
-    type=click.Path(),
-    metavar="FILE",
-    help="Take the colors of a .gpl or .csv file as the ramp, such as a file of `autocolor palette`.",
+    "FILE",
+    "Take the colors of a .gpl or .csv file as the ramp, such as a file of `autocolor palette`.",
 )
 @set_option
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    metavar="PNG",
-    help="PNG file to write. Default, without --save: PICTURE-SURFACE.png.",
-)
-@click.option(
-    "--save", type=click.Path(), metavar="PICTURE.npz", help="Save the picture with the new colors."
-)
-@click.option("--force", is_flag=True, help="Overwrite existing files.")
+@option("-o --output", "PNG", "PNG file to write. Default, without --save: PICTURE-SURFACE.png.")
+@option("--save", "PICTURE.npz", "Save the picture with the new colors.")
+@force_option
 @limit_option
 @verbose_option
 def recolor(

@@ -7,6 +7,7 @@ from typing import Final
 import click
 
 from autocolor.commands.completion import complete_lights
+from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import progress, refuse_outputs, tell_written, write_image
 from autocolor.commands.scenes import SceneSource, ended, read_edited, scene_options
 
@@ -26,46 +27,24 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options("settings", "view", "normals", "paper", "size", "smooth", "hold_exposure", required=False)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    metavar="PNG",
-    help="PNG file to write. Default, without any other output: SCENE.png, or coupe.png.",
+@option(
+    "-o --output", "PNG", "PNG file to write. Default, without any other output: SCENE.png, or coupe.png."
 )
-@click.option(
-    "--save",
-    type=click.Path(),
-    metavar="PICTURE.npz",
-    help="Save the picture with its scene, to recolor it later.",
+@option("--save", "PICTURE.npz", "Save the picture with its scene, to recolor it later.")
+@option(
+    "--layers", "FILE.exr", "Write what compositors use: each light, depth, normals, positions, identities."
 )
-@click.option(
-    "--layers",
-    type=click.Path(),
-    metavar="FILE.exr",
-    help="Write what compositors use: each light, depth, normals, positions, identities.",
-)
-@click.option(
-    "--words",
-    type=click.Path(),
-    metavar="FILE.png",
-    help="Write the words as 16-bit grays, with the lookup table.",
-)
-@click.option(
-    "--indexed",
-    type=click.Path(),
-    metavar="FILE.png",
-    help="Write the words in use, at most 256, as indices of a palette.",
-)
-@click.option(
-    "--light",
-    "lights",
+@option("--words", "FILE.png", "Write the words as 16-bit grays, with the lookup table.")
+@option("--indexed", "FILE.png", "Write the words in use, at most 256, as indices of a palette.")
+@option(
+    "--light lights",
+    "NAME",
+    "Switch off all lights but this one; repeatable.",
+    str,
     multiple=True,
-    metavar="NAME",
     shell_complete=complete_lights,
-    help="Switch off all lights but this one; repeatable.",
 )
-@click.option("--force", is_flag=True, help="Overwrite existing files.")
+@force_option
 def render(
     source: SceneSource,
     output: str | None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -12,8 +11,10 @@ from click.core import ParameterSource
 
 from autocolor.commands.completion import complete_settings, complete_views
 from autocolor.commands.options import (
+    Decorator,
     as_usage,
     limit_option,
+    option,
     size_option,
     smooth_of,
     smooth_option,
@@ -69,36 +70,34 @@ class SceneSource(NamedTuple):
         return render(scene, lines, elements, smooth=self.samples)
 
 
-set_option = click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="KEY=VALUE",
-    shell_complete=complete_settings,
-    help="Set a field of the scene, such as lights.key.intensity=2, with the names of scene.toml; the value"
+set_option = option(
+    "--set settings",
+    "KEY=VALUE",
+    "Set a field of the scene, such as lights.key.intensity=2, with the names of scene.toml; the value"
     " none unsets a field; repeatable.",
+    str,
+    multiple=True,
+    shell_complete=complete_settings,
 )
 
-READING: Final = (
+READING: Final[tuple[Decorator, ...]] = (
     click.option(
         "--surfaces",
         type=click.Choice(["materials", "parts"]),
         default="materials",
-        show_default=True,
         help="Create a missing surface for each material of the mesh, or for each part.",
     ),
-    click.option(
+    option(
         "--scale",
-        type=float,
+        "FACTOR",
+        "Factor for the coordinates of a mesh file, such as 0.001 for millimeters.",
+        float,
         default=1.0,
-        metavar="FACTOR",
-        help="Factor for the coordinates of a mesh file, such as 0.001 for millimeters.",
     ),
     click.option(
         "--up",
         type=click.Choice(["x", "y", "z"]),
         default="z",
-        show_default=True,
         help="Up axis of a mesh file; a scene file has its own.",
     ),
     click.option("--strict", is_flag=True, help="Exit with code 1 if input was repaired or skipped."),
@@ -107,7 +106,7 @@ READING: Final = (
 )
 """The options of all commands that read a scene."""
 
-PICTURES: Final = {
+PICTURES: Final[dict[str, Decorator]] = {
     "settings": set_option,
     "normals": click.option(
         "--normals",
@@ -120,9 +119,7 @@ PICTURES: Final = {
         help="Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
         " maximum, no smooth edges.",
     ),
-    "view": click.option(
-        "--view", metavar="NAME", shell_complete=complete_views, help="Render a named view of the scene."
-    ),
+    "view": option("--view", "NAME", "Render a named view of the scene.", str, shell_complete=complete_views),
     "size": size_option,
     "smooth": smooth_option,
     "hold_exposure": click.option(
@@ -134,7 +131,7 @@ PICTURES: Final = {
 """Further options for SCENE, by the field of SceneSource."""
 
 
-def scene_options(*names: str, required: bool = True) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def scene_options(*names: str, required: bool = True) -> Decorator:
     """A decorator that adds the argument SCENE, the options of READING and some of PICTURES to a command.
 
     The command gets their values as its argument `source`, a SceneSource. Its `scene` is None if the command
@@ -158,7 +155,8 @@ def scene_options(*names: str, required: bool = True) -> Callable[[Callable[...,
             return command(*arguments, source=source, **options)
 
         decorated: Callable[..., Any] = with_source
-        for add in reversed([argument, *READING, *(PICTURES[name] for name in names)]):
+        added: list[Decorator] = [argument, *READING, *(PICTURES[name] for name in names)]
+        for add in reversed(added):
             decorated = add(decorated)
         return decorated
 
@@ -193,30 +191,31 @@ def ended(report: SceneReport, source: SceneSource) -> int:
     return REPAIRED if source.strict and report.repairs else 0
 
 
-def reframed(report: SceneReport, aspect: float) -> SceneReport:
-    """The report; a created view frames the object for a picture of an aspect, its width over its height."""
-    from autocolor.scene.defaults import framed
-    from autocolor.scene.view import ASPECT
-
-    scene = report.scene
-    if not report.is_view_created or aspect == ASPECT:
-        return report
-    view = framed(scene.view, scene.object_coordinates, aspect)
-    return dataclasses.replace(report, scene=scene.replace(view=view))
-
-
 def read_edited(source: SceneSource) -> tuple[Scene, SceneReport]:
     """The scene of a source with all that is asked of it, and the report of what was read."""
-    report = reframed(read(source), source.size[0] / source.size[1])
+    report = read(source)
     tell_up(report, source)
     return edited(report, source), report
 
 
 def edited(report: SceneReport, source: SceneSource) -> Scene:
-    """The scene of a report with all that is asked of it. Exposure is held before settings are made."""
-    from autocolor.commands.settings import with_settings
+    """The scene of a report with all that is asked of it. Exposure is held before settings are made.
 
-    scene = report.scene.as_in_1983() if source.paper else report.scene
+    A created view frames the object for the size of the picture. If the edits affect a created view or
+    created lights, they are created again: an edit of the view or of `stage` of a part makes the view frame
+    the object again, unless it sets the eye, the direction or the target; an edit of `stage` makes lights be
+    created again.
+    """
+    from autocolor.commands.settings import with_settings
+    from autocolor.scene.defaults import default_lights, framed
+    from autocolor.scene.view import ASPECT
+
+    original = scene = report.scene
+    aspect = source.size[0] / source.size[1]
+    if report.is_view_created and aspect != ASPECT:
+        original = scene = scene.replace(view=framed(scene.view, scene.object_coordinates, aspect))
+    if source.paper:
+        scene = scene.as_in_1983()
     if source.normals:
         with as_usage("--normals: "):
             scene = scene.replace(words="normals")
@@ -224,7 +223,15 @@ def edited(report: SceneReport, source: SceneSource) -> Scene:
         scene = scene.with_taken_view(source.view)
     if source.hold_exposure:
         scene = with_held_exposure(scene, source.rendered(scene))
-    return created_again(report, with_settings(scene, source.settings), source.size[0] / source.size[1])
+    scene = with_settings(scene, source.settings)
+    is_same_object = [part.stage for part in original.parts] == [part.stage for part in scene.parts]
+    before, view = original.view, scene.view
+    is_placed = (before.eye, before.direction, before.target) != (view.eye, view.direction, view.target)
+    if report.is_view_created and not is_placed and not (is_same_object and before == view):
+        scene = scene.replace(view=framed(view, scene.object_coordinates, aspect))
+    if report.are_lights_created and not is_same_object and scene.lights == original.lights:
+        scene = scene.replace(lights=default_lights(scene.object_coordinates, scene.view))
+    return scene
 
 
 def with_held_exposure(scene: Scene, picture: Picture) -> Scene:
@@ -248,22 +255,3 @@ def session_of(source: SceneSource) -> tuple[SceneReport, History]:
     if scene is not report.scene:
         history.take(scene)
     return report, history
-
-
-def created_again(report: SceneReport, edited: Scene, aspect: float) -> Scene:
-    """The edited scene of a report; if the edits affect its created view or lights, they are created again.
-
-    An edit of the view or of `stage` of a part makes a created view frame the object again, unless it sets
-    the eye, the direction or the target. An edit of `stage` makes created lights be created again.
-    """
-    from autocolor.scene.defaults import default_lights, framed
-
-    original = report.scene
-    is_same_object = [part.stage for part in original.parts] == [part.stage for part in edited.parts]
-    before, view = original.view, edited.view
-    is_placed = (before.eye, before.direction, before.target) != (view.eye, view.direction, view.target)
-    if report.is_view_created and not is_placed and not (is_same_object and before == view):
-        edited = edited.replace(view=framed(view, edited.object_coordinates, aspect))
-    if report.are_lights_created and not is_same_object and edited.lights == original.lights:
-        edited = edited.replace(lights=default_lights(edited.object_coordinates, edited.view))
-    return edited

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.demo import PLACES
-from autocolor.commands.options import bringing_paints, paints_option, recover_option
+from autocolor.commands.options import bringing_paints, option, paints_option, recover_option
 from autocolor.commands.scenes import SceneSource, ended, scene_options, session_of
 from autocolor.errors import UnavailableError, UsageError
 from ramtek_emu.command_line import tell
@@ -38,24 +38,23 @@ BUTTONS: Final = "the right edge brings the menu; ENTER (left button) picks, TRA
 TIMEOUT: Final = 30.0
 """The longest wait for the display, in seconds, unless the user gives another."""
 
-timeout_option = click.option(
+timeout_option = option(
     "--timeout",
-    type=click.FloatRange(0.1, 86400),
+    "SECONDS",
+    "Longest wait for the display. A slow line needs more.",
+    click.FloatRange(0.1, 86400),
     default=TIMEOUT,
-    show_default=True,
-    metavar="SECONDS",
-    help="Longest wait for the display. A slow line needs more.",
 )
 
 
 @click.command(epilog=EXAMPLES)
 @scene_options("settings", required=False)
-@click.option(
-    "--to",
-    "address",
+@option(
+    "--to address",
+    "tcp://HOST:PORT",
+    "Address of the display, or the path of its Unix socket.",
+    str,
     required=True,
-    metavar="tcp://HOST:PORT",
-    help="Address of the display, or the path of its Unix socket.",
 )
 @recover_option
 @paints_option

@@ -12,6 +12,7 @@ import click
 
 from autocolor.checks import brief
 from autocolor.commands.completion import complete_settings
+from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import progress
 from autocolor.commands.scenes import (
     REPAIRED,
@@ -43,31 +44,25 @@ Examples:
 
 MOST_JOBS: Final = 256
 
-vary_option = click.option(
-    "--vary",
-    "varies",
-    multiple=True,
-    metavar="KEY=VALUES",
-    shell_complete=complete_settings,
-    help="Vary a field: A,B,C, where @FILE stands for the colors of a palette; or START:STOP:COUNT, evenly"
+vary_option = option(
+    "--vary varies",
+    "KEY=VALUES",
+    "Vary a field: A,B,C, where @FILE stands for the colors of a palette; or START:STOP:COUNT, evenly"
     " spaced numbers. Several --vary make every combination, the last changing fastest.",
+    str,
+    multiple=True,
+    shell_complete=complete_settings,
 )
 
-table_option = click.option(
+table_option = option(
     "--table",
-    type=click.Path(),
-    metavar="CSV|JSON",
-    help="Variants: a CSV table with a key at the top of each column, or a JSON list of objects. An empty"
+    "CSV|JSON",
+    "Variants: a CSV table with a key at the top of each column, or a JSON list of objects. An empty"
     " cell leaves a field as it is. The keys name and time are optional.",
 )
 
-jobs_option = click.option(
-    "--jobs",
-    type=click.IntRange(1, MOST_JOBS),
-    default=1,
-    show_default=True,
-    metavar="N",
-    help="Make pictures in so many processes.",
+jobs_option = option(
+    "--jobs", "N", "Make pictures in so many processes.", click.IntRange(1, MOST_JOBS), default=1
 )
 
 
@@ -75,24 +70,18 @@ jobs_option = click.option(
 @scene_options("settings", "size", "smooth", "hold_exposure")
 @vary_option
 @table_option
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    metavar="PATTERN",
-    help="Name pattern of the pictures, which ends in .png or .webp (lossless). {number:03} is a number of"
+@option(
+    "-o --output",
+    "PATTERN",
+    "Name pattern of the pictures, which ends in .png or .webp (lossless). {number:03} is a number of"
     " three digits, {name} the name of the variant, and a key such as {ambient} its value.",
+    required=True,
 )
-@click.option("--sheet", type=click.Path(), metavar="PNG", help="Write a labeled contact sheet.")
-@click.option(
-    "--columns",
-    type=click.IntRange(1, 100),
-    metavar="N",
-    help="Columns of the contact sheet. Default: about as many as rows.",
+@option("--sheet", "PNG", "Write a labeled contact sheet.")
+@option(
+    "--columns", "N", "Columns of the contact sheet. Default: about as many as rows.", click.IntRange(1, 100)
 )
-@click.option(
-    "--made", type=click.Path(), metavar="CSV", help="Write a table of the pictures and the problems."
-)
+@option("--made", "CSV", "Write a table of the pictures and the problems.")
 @jobs_option
 @click.option(
     "--resume",
@@ -100,13 +89,8 @@ jobs_option = click.option(
     help="Go on with a batch that was stopped: skip each picture that is whole and was made from the same"
     " scene and settings, and replace the others.",
 )
-@click.option(
-    "--level",
-    type=click.IntRange(0, 9),
-    metavar="0-9",
-    help="Compression of PNG files: 0 is the fastest, 9 the smallest.",
-)
-@click.option("--force", is_flag=True, help="Overwrite existing files.")
+@option("--level", "0-9", "Compression of PNG files: 0 is the fastest, 9 the smallest.", click.IntRange(0, 9))
+@force_option
 def sweep(
     source: SceneSource,
     varies: tuple[str, ...],
@@ -169,6 +153,8 @@ def started(
     """
     from autocolor.batches.making import check_keys
     from autocolor.batches.table import read_variants, varied
+    from autocolor.files.settings import scene_with
+    from autocolor.scene.scene import unset_paints
 
     tables = [] if table is None else [read_variants(table)]
     tables += [varied(text) for text in varies]
@@ -180,7 +166,12 @@ def started(
             if table is not None and number == 0:
                 raise InputError(f"{brief(table)}, column {error}") from None
             raise UsageError(f"--vary {error}") from None
-    tell_paints(scene_in(start), tables)
+    sentences = dict[str, None]()
+    for variant in chain(*tables):
+        with suppress(AutocolorError):
+            edited = scene_with(scene_in(start), variant.settings)
+            sentences |= dict.fromkeys(unset_paints(scene_in(start), edited))
+    tell(*(f"autocolor: {sentence}" for sentence in sentences))
     return start, tables, code
 
 
@@ -216,18 +207,6 @@ def scene_in(start: Scene | SavedPicture) -> Scene:
     return start.scene if isinstance(start, tuple) else start
 
 
-def tell_paints(scene: Scene, tables: list[tuple[Variant, ...]]) -> None:
-    """Print a line for each paint that variants unset, once for all variants."""
-    from autocolor.files.settings import scene_with
-    from autocolor.scene.scene import unset_paints
-
-    sentences = dict[str, None]()
-    for variant in chain(*tables):
-        with suppress(AutocolorError):
-            sentences |= dict.fromkeys(unset_paints(scene, scene_with(scene, variant.settings)))
-    tell(*(f"autocolor: {sentence}" for sentence in sentences))
-
-
 def print_counts(results: list[Result], strict: bool) -> int:
     """Print the problems on stderr, and how many pictures were made; returns the exit code."""
     failed = [result for result in results if result.problem]
@@ -254,13 +233,11 @@ def workers(jobs: int) -> Iterator[Executor | None]:
     # A process that is forked while this process has threads may hang.
     context = multiprocessing.get_context("spawn")
     executor = ProcessPoolExecutor(jobs, context, initializer=_begin_worker)
-    others = multiprocessing.active_children()
     try:
         yield executor
     except BaseException:
         for process in multiprocessing.active_children():
-            if process not in others:
-                process.terminate()
+            process.terminate()
         executor.shutdown(cancel_futures=True)
         raise
     executor.shutdown()

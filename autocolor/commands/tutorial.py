@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.options import verbose_option
+from autocolor.commands.options import option, verbose_option
 from autocolor.commands.show import refuse_address, session_elsewhere, timeout_option
 
 if TYPE_CHECKING:
@@ -20,11 +20,11 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@click.option(
-    "--to",
-    "address",
-    metavar="tcp://HOST:PORT",
-    help="Address of another display, or the path of its Unix socket, to use instead of a window.",
+@option(
+    "--to address",
+    "tcp://HOST:PORT",
+    "Address of another display, or the path of its Unix socket, to use instead of a window.",
+    str,
 )
 @timeout_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
-from contextlib import nullcontext
+from concurrent.futures import Future
 from contextvars import copy_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 import click
 
-from autocolor.commands.options import bringing_paints, paints_option, recover_option
+from autocolor.commands.options import bringing_paints, option, paints_option, recover_option
 from autocolor.commands.scenes import SceneSource, ended, scene_options, session_of
 from autocolor.errors import UsageError
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from autocolor.journal.history import History
     from autocolor.journal.journal import JournalSession
     from autocolor.screens.viewer import Viewer
-    from ramtek_emu import Ramtek9300
     from ramtek_emu.monitor.window import Key, Monitor, Pointer
 
 EXAMPLES: Final = """\b
@@ -40,7 +39,7 @@ Examples:
 @scene_options("settings", "normals", "paper", required=False)
 @recover_option
 @click.option("--sessions", is_flag=True, help="List the sessions that were not closed, and exit.")
-@click.option("--forget", metavar="SESSION", help="Remove a session that was not closed, and exit.")
+@option("--forget", "SESSION", "Remove a session that was not closed, and exit.", str)
 @paints_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
@@ -119,14 +118,22 @@ def show(
     without a screen.
     """
     from autocolor.errors import UnavailableError
-    from ramtek_emu import NoScreenError
+    from ramtek_emu import NoScreenError, Ramtek9300
     from ramtek_emu.monitor.window import open_screen
 
     waiting = waiting or Waiting(history.scene.name)
     try:
         # Fail before rendering if there is no screen.
         open_screen()
-        viewer, display = waiting.until("rendering", lambda: viewer_of(history))
+        display = Ramtek9300()
+
+        def begun() -> Viewer:
+            from autocolor.screens.viewer import Viewer
+
+            return Viewer(history, display)
+
+        viewer = waiting.until("rendering", begun)
+        viewer.session.is_at_hand = True
         prepare(viewer)
         waiting.monitor.display = display
         # Importing it takes long; the thread did.
@@ -139,17 +146,6 @@ def show(
             f"{error}; `autocolor render` writes the demo to coupe.png, and `autocolor render SCENE -o PNG`"
             " renders any scene"
         ) from None
-
-
-def viewer_of(history: History) -> tuple[Viewer, Ramtek9300]:
-    """The viewer of a session, and its display, which shows the picture."""
-    from autocolor.screens.viewer import Viewer
-    from ramtek_emu import Ramtek9300
-
-    display = Ramtek9300()
-    viewer = Viewer(history, display)
-    viewer.session.is_at_hand = True
-    return viewer, display
 
 
 # Reading a large scene takes seconds, and so does its first picture. They are computed in a thread, while the
@@ -185,16 +181,13 @@ class Waiting:
         An error of the function closes the window and is raised. If the user closes the window, the command
         ends; the thread is abandoned, and ends with the process.
         """
-        context = click.get_current_context(silent=True)
-        results: list[Result] = []
-        errors: list[BaseException] = []
+        done: Future[Result] = Future()
 
         def run() -> None:
             try:
-                with nullcontext() if context is None else context.scope(cleanup=False):
-                    results.append(work())
+                done.set_result(work())
             except BaseException as error:
-                errors.append(error)
+                done.set_exception(error)
 
         thread = threading.Thread(target=copy_context().run, args=(run,), daemon=True)
         thread.start()
@@ -202,12 +195,10 @@ class Waiting:
         try:
             if thread.is_alive():
                 self._wait(f"{doing} {self._name} ...", thread)
-            if errors:
-                raise errors[0]
+            return done.result()
         except BaseException:
             self.monitor.close()
             raise
-        return results[0]
 
     def _wait(self, message: str, thread: threading.Thread) -> None:
         """Show a message until the thread ends. Without a screen, wait for its errors, which come first."""
