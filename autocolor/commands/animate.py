@@ -12,7 +12,7 @@ from autocolor.commands.completion import complete_settings
 from autocolor.commands.options import as_usage, force_option, option
 from autocolor.commands.outputs import progress
 from autocolor.commands.scenes import SceneSource, scene_options
-from autocolor.commands.sweep import jobs_option, scene_in, sizes, started, table_option, workers
+from autocolor.commands.sweep import jobs_option, scene_in, started, table_option, workers
 from autocolor.errors import InputError, UsageError
 from ramtek_emu.command_line import tell
 
@@ -85,7 +85,7 @@ def animate(
     kind = films.kind_of(output)
     films.check_rate(fps, kind)
     if kind == films.STREAM and source.smooth is None:
-        source = source._replace(smooth="1")
+        source = source._replace(smooth=1)
     start, tables, code = started(source, varies, table)
     own = [] if table is None else tables[:1]
     for variants in own:
@@ -103,7 +103,7 @@ def animate(
             output,
             frames_per_second=fps,
             loop=not once,
-            **sizes(source, start),
+            **source.given_sizes,
             executor=executor,
             overwrite=force,
             progress=lambda _: bar.update(1),

@@ -82,7 +82,7 @@ recover_option = click.option(
 
 size_option = option(
     "--size",
-    "ELEMENTSxLINES",
+    "WIDTHxHEIGHT",
     "Width and height of the picture, up to 4096x4096, as on the largest display.",
     str,
     default="640x480",
@@ -90,24 +90,13 @@ size_option = option(
 )
 
 
-smooth_option = click.option(
+smooth_option = option(
     "--smooth",
-    type=click.Choice(["1", "2", "3", "4"]),
-    help="Smooth edges: each pixel is the mean light of 1, 4, 9 or 16. 1 is the picture of a display."
+    "1-4",
+    "Smooth edges: each pixel is the mean light of 1, 4, 9 or 16. 1 is the picture of a display."
     " Default: 2, and 1 for more than 10 million pixels.",
+    click.IntRange(1, 4),
 )
-
-MOST_SMOOTH_PIXELS: Final = 10_000_000
-"""Limit: the pixels of a picture that is smooth by default. Four times as many fit in the memory budget."""
-
-
-def smooth_of(given: str | None, size: tuple[int, int]) -> int:
-    """The smoothness that `--smooth` asks for, or the default for a size."""
-    from autocolor.images import SMOOTHNESS
-
-    if given is not None:
-        return int(given)
-    return SMOOTHNESS if size[0] * size[1] <= MOST_SMOOTH_PIXELS else 1
 
 
 def _allow(context: click.Context, _: click.Parameter, limit: float | None) -> None:

@@ -63,16 +63,16 @@ def page(
         except UsageError as error:
             raise InputError(f"{table}: {error}") from None
     variants = products(tables) if tables else ()
-    if isinstance(start, tuple) and {"size", "smooth"} & source.given:
+    if isinstance(start, tuple) and source.given_sizes:
         raise UsageError("--size and --smooth are for a scene, not for a picture file; leave them out")
     with progress(2) as bar:
         if isinstance(start, tuple):
             picture = start.picture
         else:
-            elements, lines = source.size
-            if source.smooth is None and elements * lines * source.samples**2 > LARGEST_CANVAS:
-                source = source._replace(smooth="1")
-            check_canvas(elements * source.samples, lines * source.samples)
+            width, height = source.size
+            if source.smooth is None and width * height * source.samples**2 > LARGEST_CANVAS:
+                source = source._replace(smooth=1)
+            check_canvas(width * source.samples, height * source.samples)
             picture = source.rendered(scene)
         bar.update(1)
         save_page(output, scene, picture, lights=lights, variants=variants, overwrite=force)

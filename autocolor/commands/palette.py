@@ -50,7 +50,7 @@ def palette(
         output = f"{file_stem(Path(source.path).stem)}-{file_stem(surface)}.gpl"
     check_palette_path(Path(output))
     refuse_output(output, overwrite=force)
-    source = source._replace(smooth="1")
+    source = source._replace(smooth=1)
     start, code = start_of(source)
     scene = scene_in(start)
     # A wrong name is refused before the picture is rendered.

@@ -62,7 +62,7 @@ def render(
     """
     unsmoothed = {"--layers": layers, "--words": words, "--indexed": indexed}
     if source.smooth is None and (source.paper or any(unsmoothed.values())):
-        source = source._replace(smooth="1")
+        source = source._replace(smooth=1)
     edited, report = read_edited(source)
     if lights:
         edited = edited.only_lights(*lights)

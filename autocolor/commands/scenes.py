@@ -16,7 +16,6 @@ from autocolor.commands.options import (
     limit_option,
     option,
     size_option,
-    smooth_of,
     smooth_option,
     verbose_option,
 )
@@ -47,7 +46,7 @@ class SceneSource(NamedTuple):
     paper: bool = False
     view: str | None = None
     size: tuple[int, int] = (640, 480)
-    smooth: str | None = None
+    smooth: int | None = None
     hold_exposure: bool = False
     given: frozenset[str] = frozenset()
     """The names of the values that the user gave."""
@@ -60,14 +59,20 @@ class SceneSource(NamedTuple):
     @property
     def samples(self) -> int:
         """The smoothness of a picture of the scene."""
-        return smooth_of(self.smooth, self.size)
+        from autocolor.images import default_smooth
+
+        return self.smooth or default_smooth(self.size)
+
+    @property
+    def given_sizes(self) -> dict[str, Any]:
+        """The size and the smoothness that the user gave, by their names."""
+        return {name: getattr(self, name) for name in ("size", "smooth") if name in self.given}
 
     def rendered(self, scene: Scene) -> Picture:
         """The picture of a scene in the size and the smoothness that are asked for."""
         from autocolor.rendering import render
 
-        elements, lines = self.size
-        return render(scene, lines, elements, smooth=self.samples)
+        return render(scene, self.size, smooth=self.samples)
 
 
 set_option = option(

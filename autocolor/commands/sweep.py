@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -131,7 +131,7 @@ def sweep(
             variants,
             output,
             executor=executor,
-            **sizes(source, start),
+            **source.given_sizes,
             level=level,
             overwrite=force,
             resume=resume,
@@ -191,15 +191,6 @@ def start_of(source: SceneSource) -> tuple[Scene | SavedPicture, int]:
     saved = read_picture(source.path)
     scene = with_held_exposure(saved.scene, saved.picture) if source.hold_exposure else saved.scene
     return saved._replace(scene=recolored(scene, None, {}, source.settings)), 0
-
-
-def sizes(source: SceneSource, start: Scene | SavedPicture) -> dict[str, Any]:
-    """The size and the smoothness of pictures; those of a picture file are None if they are not given."""
-    is_scene = not isinstance(start, tuple)
-    return {
-        "size": source.size if is_scene or "size" in source.given else None,
-        "smooth": source.samples if is_scene or source.smooth is not None else None,
-    }
 
 
 def scene_in(start: Scene | SavedPicture) -> Scene:
