@@ -32,9 +32,7 @@ Examples:
     "File to write: a GIMP palette (.gpl) or a table (.csv). Default: SCENE-SURFACE.gpl.",
 )
 @force_option
-def palette(
-    context: click.Context, source: SceneSource, surface: str, output: str | None, force: bool
-) -> int:
+def palette(source: SceneSource, surface: str, output: str | None, force: bool) -> int:
     """Write the lookup table entries of SURFACE to a palette file, from its lowest level up.
 
     SCENE may be a picture file, which needs no rendering. Any other scene is rendered in the size of the

@@ -65,7 +65,7 @@ def settings_after(scene: Scene, incomplete: str) -> list[str]:
         return [f"{key}={value}" for value in _values(scene, key)]
     starts = dict.fromkeys(
         next((start for start in accumulate(parts) if len(start) > len(incomplete)), "")
-        for parts in _keys(Scene, scene)
+        for parts in key_parts(Scene, scene)
     )
     found = [start for start in starts if start.startswith(incomplete)]
     if len(found) != 1:
@@ -73,17 +73,17 @@ def settings_after(scene: Scene, incomplete: str) -> list[str]:
     return [*(found if found[0].endswith("=") else ()), *settings_after(scene, found[0])]
 
 
-def _keys(cls: type[Row], row: Row | None) -> Iterator[tuple[str, ...]]:
+def key_parts(cls: type[Row], row: Row | None) -> Iterator[tuple[str, ...]]:
     """The keys of the fields of a row, as parts. Fields of rows without a name are those of their class."""
     for key in keys_of(cls):
         column, value = field_and_value(cls, row, (key,))
         kind = None if column is None else column.kind
         if isinstance(kind, RowList) or (isinstance(kind, NamedRows) and value):
             yield from (
-                (f"{key}.", f"{each.name}.", *rest) for each in value for rest in _keys(type(each), each)
+                (f"{key}.", f"{each.name}.", *rest) for each in value for rest in key_parts(type(each), each)
             )
         elif isinstance(kind, Nested):
-            yield from ((f"{key}.", *rest) for rest in _keys(kind.row_class, value))
+            yield from ((f"{key}.", *rest) for rest in key_parts(kind.row_class, value))
         elif not isinstance(kind, Instance) and (key != "name" or cls is Scalar):
             yield (f"{key}=",)
 

@@ -100,8 +100,9 @@ def fault_values(faults: Sequence[Fault]) -> list[dict[str, Any]]:
     """The faults as values that JSON can hold, with at most MOST_ROWS rows of a kind."""
 
     def hole_values(hole: Hole) -> dict[str, Any]:
-        values = {**vars(hole), "node": hole.node + 1}
-        return {**values, "closed": values.pop("is_closed")}
+        values = {**vars(hole), "node": hole.node + 1, "closed": hole.is_closed}
+        del values["is_closed"]
+        return values
 
     return [
         {

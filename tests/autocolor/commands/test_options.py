@@ -38,7 +38,7 @@ def test_what_is_read_created_and_computed_is_told_on_stderr(
 def test_given_twice_more_is_told_and_nothing_twice(folder: Path, run: Run, line: str) -> None:
     ran = run(*line.split())
     assert ran.code == 0
-    assert ran.err.count("autocolor: Picture(480 x 640") == 1
+    assert ran.err.count("autocolor: Picture(640 x 480") == 1
     assert ran.err.count("autocolor: read two.obj") == 1
 
 

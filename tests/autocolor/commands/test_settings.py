@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from autocolor import Flap, Flaps, HalfSpace, Scene, Surface, read_scene
-from autocolor.commands.settings import keys_after, with_settings
+from autocolor.commands.settings import settings_after, with_settings
 from autocolor.errors import UsageError
 from autocolor.files.settings import place_of, value_at
 from autocolor.files.text_table import value_of_text
@@ -162,36 +162,32 @@ test_what_cannot_be_set = refused(
 )
 
 
-# Keys, as completion and the studio know them.
-
-
 @pytest.mark.parametrize(
     ("start", "some"),
     [
         ("", "ambient= view. lights. parts. surfaces. background="),
         ("lights.", "key. key.2."),
         ("surfaces.front.low.", "blend= exponent="),
-        ("lights.key.", "aim= flaps. cone_angle= half_spaces. follows= only_parts="),
+        ("lights.key.", "aim= flaps. cone_angle= half_spaces. follows= only_parts= 2."),
         ("lights.key.flaps.", "x. y. z."),
-        ("lights.key.flaps.z.", "minimum= on="),
         ("lights.key.half_spaces.", "a.b. left."),
         ("lights.key.half_spaces.a.b.", "point= on="),
-        ("lights.key.half_spaces.left.on=", "false"),
         ("lights.key.half_spaces.left.edge_width=", "0.0"),
-        ("lights.key.follows=", "eye key.2"),
+        ("lights.key.follows=", "none eye key.2"),
+        ("lights.key.position=", "[2.0,-3.0,4.0]"),
         ("parts.side.surface=", "side front.low"),
         ("scalar.", "name= limits= bands="),
         ("scalar.name=", "z"),
         ("scalar.scale=", "viridis zebra_r"),
-        ("dither=", "off ordered"),
+        ("mapping=", "linear gamma equalize"),
         ("lights.key.on=", "true false"),
         ("lights.key.flaps.z.maximum=", "0.5"),
         ("surfaces.side.model=", "phong blinn"),
         ("background=", "#000000 navy"),
     ],
 )
-def test_the_keys_after_a_start_are_those_of_its_table(start: str, some: str) -> None:
-    found = keys_after(scene(), start)
+def test_what_follows_a_start_are_the_keys_of_its_table_or_the_values(start: str, some: str) -> None:
+    found = settings_after(scene(), start)
     assert {f"{start}{each}" for each in some.split()} <= set(found)
     assert all(each.startswith(start) for each in found)
-    assert not {"lights.key.name=", "lights.key.half_spaces.a.b.name="} & set(found)
+    assert not {"lights.key.name=", "lights.key.half_spaces.a.b.name=", "scalar.name=none"} & set(found)

@@ -18,7 +18,6 @@ from autocolor.commands.demo import demo_folder
 from autocolor.commands.show import BUTTONS, attend, folder_of, port_to, session_elsewhere
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
-from autocolor.journal.places import Source
 from autocolor.screens.message_line import MessagePart, lines_of_message
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
@@ -150,9 +149,9 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
 
 
 def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(folder: Path) -> None:
-    assert folder_of(Source("scene")) == folder / "scene"
-    assert folder_of(Source("scene/scene.toml")) == folder / "scene"
-    assert folder_of(Source(str(demo_folder()))) == folder
+    assert folder_of("scene") == folder / "scene"
+    assert folder_of("scene/scene.toml") == folder / "scene"
+    assert folder_of(str(demo_folder())) == folder
 
 
 def place_of(viewer: Viewer, label: str, share: float = 0.5) -> tuple[int, int]:
