@@ -9,10 +9,10 @@ import click
 
 from autocolor.checks import brief
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.options import as_usage, force_option, option
+from autocolor.commands.options import as_usage, flag, force_option, option
 from autocolor.commands.outputs import progress
-from autocolor.commands.scenes import SceneSource, scene_options
-from autocolor.commands.sweep import jobs_option, scene_in, started, table_option, workers
+from autocolor.commands.scenes import SceneSource, scene_in, scene_options
+from autocolor.commands.sweep import jobs_option, started, table_option, workers
 from autocolor.errors import InputError, UsageError
 from ramtek_emu.command_line import tell
 
@@ -56,7 +56,7 @@ FRAMES: Final = 48
     required=True,
 )
 @option("--fps", "RATE", "Frames per second of a film.", float, default=24.0)
-@click.option("--once", is_flag=True, help="Show the film once; otherwise it begins again at its end.")
+@flag("--once", "Show the film once; otherwise it begins again at its end.")
 @jobs_option
 @force_option
 def animate(

@@ -15,7 +15,6 @@ from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
-    from autocolor.scene.mesh import Mesh
     from autocolor.scene.scalar import MeshScalar
 
 EXAMPLES: Final = """\b
@@ -23,6 +22,10 @@ Examples:
   autocolor info scenes/coupe
   autocolor info car.obj --json
 """
+
+
+NORMALS: Final = {None: "computed", True: "the file's", False: "the file's, computed where it has none"}
+"""Which normals are used, by whether the file's own are complete."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -47,7 +50,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
     from autocolor.scene.mesh_faults import quad_shapes
 
     scene = report.scene
-    mesh = scene.mesh
+    mesh, own = scene.mesh, scene.mesh.own_normals
     picture = render(scene)
     ranges = display_image(scene, picture).ranges
     low, high = mesh.bounds
@@ -58,7 +61,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "triangles": mesh.triangle_count,
         "edges": mesh.edge_count,
         "quads": dataclasses.asdict(quad_shapes(mesh)),
-        "normals": normals_fact(mesh),
+        "normals": NORMALS[None if own is None else own.are_complete],
         "bounds": [low.tolist(), high.tolist()],
         "scalars": [scalar_facts(scalar) for scalar in mesh.scalars],
         "parts": {part.name: part.surface for part in scene.parts},
@@ -79,13 +82,6 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "repairs": list(report.repairs),
         "created": list(report.created),
     }
-
-
-def normals_fact(mesh: Mesh) -> str:
-    """Which normals of a mesh are used."""
-    if mesh.own_normals is None:
-        return "computed"
-    return "the file's" if mesh.own_normals.are_complete else "the file's, computed where it has none"
 
 
 def scalar_facts(scalar: MeshScalar) -> dict[str, Any]:

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from autocolor.screens.viewer import Viewer
 
-
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 """A decorator of the function of a command."""
 
@@ -31,7 +30,12 @@ def option(names: str, metavar: str, help: str, type: Any = None, **more: Any) -
     return click.option(*names.split(), metavar=metavar, help=help, type=type or click.Path(), **more)
 
 
-force_option = click.option("--force", is_flag=True, help="Overwrite existing files.")
+def flag(name: str, help: str) -> Decorator:
+    """An option without a value."""
+    return click.option(name, is_flag=True, help=help)
+
+
+force_option = flag("--force", "Overwrite existing files.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
@@ -62,40 +66,13 @@ def bringing_paints(path: str | None) -> Callable[[Viewer], object]:
     return lambda viewer: viewer.bring_paints(paints, name)
 
 
-def _size(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
-    from autocolor.images import size_of
-
-    try:
-        return size_of(text)
-    except UsageError as error:
-        raise click.BadParameter(str(error)) from None
-
-
-recover_option = click.option(
+recover_option = option(
     "--recover",
+    "[SESSION]",
+    "Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
+    str,
     is_flag=False,
     flag_value="newest",
-    metavar="[SESSION]",
-    help="Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
-)
-
-
-size_option = option(
-    "--size",
-    "WIDTHxHEIGHT",
-    "Width and height of the picture, up to 4096x4096, as on the largest display.",
-    str,
-    default="640x480",
-    callback=_size,
-)
-
-
-smooth_option = option(
-    "--smooth",
-    "1-4",
-    "Smooth edges: each pixel is the mean light of 1, 4, 9 or 16. 1 is the picture of a display."
-    " Default: 2, and 1 for more than 10 million pixels.",
-    click.IntRange(1, 4),
 )
 
 

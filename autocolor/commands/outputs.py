@@ -18,17 +18,14 @@ from ramtek_emu.writing import same_outputs
 if TYPE_CHECKING:
     from click._termui_impl import ProgressBar
 
-    from autocolor.lighting.picture import Picture
-    from autocolor.scene.scene import Scene
-
 KINDS: Final = {
-    "-o": ("a PNG", ("", ".png")),
-    "--save": ("a picture file", (".npz",)),
-    "--layers": ("an OpenEXR file", (".exr",)),
-    "--words": ("a PNG", (".png",)),
-    "--indexed": ("a PNG", (".png",)),
+    "-o": ("a PNG", ".png"),
+    "--save": ("a picture file", ".npz"),
+    "--layers": ("an OpenEXR file", ".exr"),
+    "--words": ("a PNG", ".png"),
+    "--indexed": ("a PNG", ".png"),
 }
-"""The kind of an output and the suffixes of its name, by option."""
+"""The kind of an output and the suffix of its name, by option."""
 
 
 def refuse_outputs(outputs: Mapping[str, str | None], force: bool) -> None:
@@ -47,25 +44,14 @@ def refuse_outputs(outputs: Mapping[str, str | None], force: bool) -> None:
         folder = Path(path).parent
         if not os.access(folder, os.W_OK):
             raise OutputError(f"an output must be in a writable folder, not {folder}; choose another")
-        kind, suffixes = KINDS[option]
-        if Path(path).suffix.lower() not in suffixes:
-            rule = f"{option} must be the name of {kind}, not {shown(path)}"
-            raise UsageError(f"{rule}; end it in {suffixes[-1]}")
+        kind, suffix = KINDS[option]
+        if Path(path).suffix.lower() != suffix:
+            raise UsageError(f"{option} must be the name of {kind}, not {shown(path)}; end it in {suffix}")
     if same := same_outputs([*given.values()]):
         one, other = same
         raise UsageError(
             f"two outputs must be two files, not {one} and {other}, which are the same; rename one"
         )
-
-
-def write_image(path: str, scene: Scene, picture: Picture, force: bool) -> None:
-    """Write a picture in the colors of a scene to a PNG file of any name, atomically; see `save_image`."""
-    from autocolor.files.writing import write_atomically
-    from autocolor.images import display_image, smoothed
-    from ramtek_emu.png import png_bytes
-
-    colors = smoothed(display_image(scene, picture), picture.smooth)
-    write_atomically(path, png_bytes(colors), overwrite=force)
 
 
 def tell_written(*paths: str | None) -> None:

@@ -7,10 +7,10 @@ from typing import Final
 
 import click
 
-from autocolor.commands.options import force_option, option
+from autocolor.commands.options import flag, force_option, option
 from autocolor.commands.outputs import progress, tell_written
-from autocolor.commands.scenes import SceneSource, scene_options
-from autocolor.commands.sweep import scene_in, started, table_option, vary_option
+from autocolor.commands.scenes import SceneSource, scene_in, scene_options
+from autocolor.commands.sweep import started, table_option, vary_option
 from autocolor.errors import InputError, UsageError
 
 EXAMPLES: Final = """\b
@@ -24,9 +24,7 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options("settings", "size", "smooth")
-@click.option(
-    "--lights", is_flag=True, help="Let the page change the lights: their strengths, and which are on."
-)
+@flag("--lights", "Let the page change the lights: their strengths, and which are on.")
 @vary_option
 @table_option
 @option("-o --output", "HTML", "Page to write. Default: SCENE.html.")

@@ -10,8 +10,7 @@ import click
 from autocolor.commands.completion import complete_surfaces
 from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import tell_written
-from autocolor.commands.scenes import SceneSource, scene_options
-from autocolor.commands.sweep import scene_in, start_of
+from autocolor.commands.scenes import SceneSource, scene_in, scene_options, start_of
 from autocolor.errors import UsageError
 
 EXAMPLES: Final = """\b

@@ -10,7 +10,7 @@ import click
 
 from autocolor.commands.completion import complete_colors, complete_surfaces
 from autocolor.commands.options import as_usage, force_option, limit_option, option, verbose_option
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
+from autocolor.commands.outputs import refuse_outputs, tell_written
 from autocolor.commands.scenes import set_option
 from autocolor.errors import InputError, UsageError
 
@@ -90,6 +90,11 @@ def recolor(
     --set changes any field that needs no rendering: paints, the mapping, and the color scale, limits and
     bands of a scalar.
     """
+    from autocolor.files.paths import file_stem
+    from autocolor.files.picture_file import read_picture, write_picture
+    from autocolor.images import save_image
+    from autocolor.logs import logger_of, timed
+
     given = {name: value for name, value in colors.items() if value is not None}
     if surface is None and (given or palette is not None or not settings):
         raise UsageError(
@@ -97,18 +102,12 @@ def recolor(
             " body --object navy"
         )
     if output is None and save is None:
-        from autocolor.files.paths import file_stem
-
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
     refuse_outputs({"-o": output, "--save": save}, force)
     if palette is not None:
         if given:
             raise UsageError("--palette gives all colors of a surface; leave the other options of colors out")
         given["ramp"] = ramp_of_file(palette)
-
-    from autocolor.files.picture_file import read_picture, write_picture
-    from autocolor.logs import logger_of, timed
-
     logger = logger_of(__name__)
     with timed(logger, f"read {picture}"):
         saved = read_picture(picture)
@@ -118,7 +117,7 @@ def recolor(
         write_picture(save, scene, saved.picture, overwrite=force)
     if output is not None:
         with timed(logger, "image written"):
-            write_image(output, scene, saved.picture, force)
+            save_image(output, scene, saved.picture, overwrite=force)
     tell_written(output, save)
 
 

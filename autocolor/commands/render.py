@@ -8,7 +8,7 @@ import click
 
 from autocolor.commands.completion import complete_lights
 from autocolor.commands.options import force_option, option
-from autocolor.commands.outputs import progress, refuse_outputs, tell_written, write_image
+from autocolor.commands.outputs import progress, refuse_outputs, tell_written
 from autocolor.commands.scenes import SceneSource, ended, read_edited, scene_options
 
 EXAMPLES: Final = """\b
@@ -60,6 +60,11 @@ def render(
     --layers, --words and --indexed never average pixels. With any of these options, --smooth is 1 by default.
     With --smooth N, their files have N times the lines and elements of the PNG.
     """
+    from autocolor.files.paths import file_stem
+    from autocolor.files.picture_file import write_picture
+    from autocolor.images import save_image, save_words
+    from autocolor.layers import open_exr, save_layers
+
     unsmoothed = {"--layers": layers, "--words": words, "--indexed": indexed}
     if source.smooth is None and (source.paper or any(unsmoothed.values())):
         source = source._replace(smooth=1)
@@ -67,23 +72,13 @@ def render(
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None and not any(unsmoothed.values()):
-        from autocolor.files.paths import file_stem
-
         output = f"{file_stem(edited.name)}.png"
     outputs = {"-o": output, "--save": save, **unsmoothed}
     refuse_outputs(outputs, force)
     if layers is not None:
-        from autocolor.layers import open_exr
-
         open_exr()
 
-    with progress(5) as bar:
-        from autocolor.files.picture_file import write_picture
-        from autocolor.images import save_words
-        from autocolor.layers import save_layers
-
-        _ = edited.mesh.normals
-        bar.update(1)
+    with progress(3) as bar:
         picture = source.rendered(edited)
         bar.update(1)
         # This may be refused, so it comes first.
@@ -91,9 +86,8 @@ def render(
             save_words(indexed, edited, picture, indexed=True, overwrite=force)
         if save is not None:
             write_picture(save, edited, picture, overwrite=force)
-        bar.update(1)
         if output is not None:
-            write_image(output, edited, picture, force)
+            save_image(output, edited, picture, overwrite=force)
         bar.update(1)
         if words is not None:
             save_words(words, edited, picture, overwrite=force)

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import click
 from click.core import ParameterSource
 
 from autocolor.commands.completion import complete_settings, complete_views
-from autocolor.commands.options import (
-    Decorator,
-    as_usage,
-    limit_option,
-    option,
-    size_option,
-    smooth_option,
-    verbose_option,
-)
+from autocolor.commands.options import Decorator, as_usage, flag, limit_option, option, verbose_option
 from autocolor.errors import UsageError
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
+    from autocolor.files.picture_file import SavedPicture
     from autocolor.files.scene_report import SceneReport
     from autocolor.journal.history import History
     from autocolor.lighting.picture import Picture
@@ -105,32 +99,52 @@ READING: Final[tuple[Decorator, ...]] = (
         default="z",
         help="Up axis of a mesh file; a scene file has its own.",
     ),
-    click.option("--strict", is_flag=True, help="Exit with code 1 if input was repaired or skipped."),
+    flag("--strict", "Exit with code 1 if input was repaired or skipped."),
     limit_option,
     verbose_option,
 )
 """The options of all commands that read a scene."""
 
+
+def _size(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
+    from autocolor.images import size_of
+
+    try:
+        return size_of(text)
+    except UsageError as error:
+        raise click.BadParameter(str(error)) from None
+
+
 PICTURES: Final[dict[str, Decorator]] = {
     "settings": set_option,
-    "normals": click.option(
+    "normals": flag(
         "--normals",
-        is_flag=True,
-        help="Let words stand for normals: changing a light is then fast. Lights and eye count as far away.",
+        "Let words stand for normals: changing a light is then fast. Lights and eye count as far away.",
     ),
-    "paper": click.option(
+    "paper": flag(
         "--paper",
-        is_flag=True,
-        help="Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
+        "Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
         " maximum, no smooth edges.",
     ),
     "view": option("--view", "NAME", "Render a named view of the scene.", str, shell_complete=complete_views),
-    "size": size_option,
-    "smooth": smooth_option,
-    "hold_exposure": click.option(
+    "size": option(
+        "--size",
+        "WIDTHxHEIGHT",
+        "Width and height of the picture, up to 4096x4096, as on the largest display.",
+        str,
+        default="640x480",
+        callback=_size,
+    ),
+    "smooth": option(
+        "--smooth",
+        "1-4",
+        "Smooth edges: each pixel is the mean light of 1, 4, 9 or 16. 1 is the picture of a display."
+        " Default: 2, and 1 for more than 10 million pixels.",
+        click.IntRange(1, 4),
+    ),
+    "hold_exposure": flag(
         "--hold-exposure",
-        is_flag=True,
-        help="Hold the exposure that SCENE has without other options, so that less light is darker.",
+        "Hold the exposure that SCENE has without other options, so that less light is darker.",
     ),
 }
 """Further options for SCENE, by the field of SceneSource."""
@@ -237,6 +251,29 @@ def edited(report: SceneReport, source: SceneSource) -> Scene:
     if report.are_lights_created and not is_same_object and scene.lights == original.lights:
         scene = scene.replace(lights=default_lights(scene.object_coordinates, scene.view))
     return scene
+
+
+def start_of(source: SceneSource) -> tuple[Scene | SavedPicture, int]:
+    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs."""
+    from autocolor.commands.recolor import recolored
+    from autocolor.files.opening import is_picture
+    from autocolor.files.picture_file import read_picture
+
+    if not is_picture(Path(source.path)):
+        scene, report = read_edited(source)
+        return scene, ended(report, source)
+    if source.normals:
+        raise UsageError(
+            "--normals is for a scene, not for a picture file, which has no normals; leave it out"
+        )
+    saved = read_picture(source.path)
+    scene = with_held_exposure(saved.scene, saved.picture) if source.hold_exposure else saved.scene
+    return saved._replace(scene=recolored(scene, None, {}, source.settings)), 0
+
+
+def scene_in(start: Scene | SavedPicture) -> Scene:
+    """The scene, or the scene of a picture."""
+    return start.scene if isinstance(start, tuple) else start
 
 
 def with_held_exposure(scene: Scene, picture: Picture) -> Scene:

@@ -96,6 +96,7 @@ def _values(scene: Scene, key: str) -> list[str]:
         return []
     kind, value = column.kind, value_at(scene, place)
     plain = None if value is None else kind.to_plain(name, value).get(name)
+    plain = UNSET if plain in (None, {}) else plain
     present = plain if isinstance(plain, str) else json.dumps(plain, separators=(",", ":"))
     choices: Iterable[str] = ()
     if isinstance(kind, (OneOf, CurveKind)):
@@ -112,6 +113,5 @@ def _values(scene: Scene, key: str) -> list[str]:
         choices = scene.scalar_names
     elif isinstance(kind, Referring) and not isinstance(kind, RangesByName):
         choices = [*kind.words, *(row.name for row in vars(scene)[kind.table])]
-    if value is None and not column.is_optional:
-        return list(choices)
-    return list(dict.fromkeys([UNSET if plain in (None, {}) else present, *choices]))
+    is_present = value is not None or column.is_optional
+    return list(dict.fromkeys([*([present] if is_present else ()), *choices]))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.demo import PLACES
-from autocolor.commands.options import bringing_paints, option, paints_option, recover_option
+from autocolor.commands.options import bringing_paints, flag, option, paints_option, recover_option
 from autocolor.commands.scenes import SceneSource, ended, scene_options, session_of
 from autocolor.errors import UnavailableError, UsageError
 from ramtek_emu.command_line import tell
@@ -30,10 +30,8 @@ Examples:
   autocolor show --recover --to tcp://127.0.0.1:9300
 """
 
-
 BUTTONS: Final = "the right edge brings the menu; ENTER (left button) picks, TRACK (right button) drags"
 """The first message on the display. In the window of `ramtek serve`, the mouse is the joystick unit."""
-
 
 TIMEOUT: Final = 30.0
 """The longest wait for the display, in seconds, unless the user gives another."""
@@ -59,7 +57,7 @@ timeout_option = option(
 @recover_option
 @paints_option
 @timeout_option
-@click.option("--once", is_flag=True, help="Send the picture and exit; the display keeps showing it.")
+@flag("--once", "Send the picture and exit; the display keeps showing it.")
 def show(
     source: SceneSource, address: str, recover: str | None, paints: str | None, timeout: float, once: bool
 ) -> int:
@@ -94,10 +92,7 @@ def show(
 
 
 def show_once(scene: Scene, address: str, timeout: float = TIMEOUT) -> None:
-    """Send the picture of a scene to the display at an address, and wait until it is complete.
-
-    Raises UnavailableError if no display answers there.
-    """
+    """Send the picture of a scene to a display. Raises UnavailableError if none answers at the address."""
     from autocolor.studio import Studio
 
     with port_to(address, timeout) as port:
@@ -196,10 +191,9 @@ def refuse_address(address: str) -> None:
     from ramtek_emu import PortError
     from ramtek_emu.host.port import host_and_port
 
-    if _is_path(address):
-        return
     try:
-        host_and_port(address)
+        if not _is_path(address):
+            host_and_port(address)
     except PortError as error:
         raise UsageError(f"--to: {error}, or the path of a Unix socket with a slash in it") from None
 

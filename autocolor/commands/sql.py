@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.options import as_usage
+from autocolor.commands.options import flag
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import AutocolorError, InputError, UsageError
@@ -39,7 +39,7 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @scene_options()
 @click.argument("statement", required=False)
-@click.option("--write", is_flag=True, help="Allow INSERT, UPDATE and DELETE, and save SCENE.")
+@flag("--write", "Allow INSERT, UPDATE and DELETE, and save SCENE.")
 @click.option("--csv", "form", flag_value="csv", help="Print rows as CSV.")
 @click.option("--json", "form", flag_value="json", help="Print rows as a JSON list of objects.")
 @click.option(
@@ -101,8 +101,7 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, sta
     try:
         count = tables.change(statement)
     except InputError as error:
-        with as_usage():
-            raise InputError(["nothing was changed", *error.problems]) from None
+        raise UsageError(["nothing was changed", *error.problems]) from None
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
     if not is_store(Path(source.path)):
         from autocolor.files.scene_writing import write_scene

@@ -5,23 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import chain
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
 
 from autocolor.checks import brief
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.options import force_option, option
+from autocolor.commands.options import flag, force_option, option
 from autocolor.commands.outputs import progress
-from autocolor.commands.scenes import (
-    REPAIRED,
-    SceneSource,
-    ended,
-    read_edited,
-    scene_options,
-    with_held_exposure,
-)
+from autocolor.commands.scenes import REPAIRED, SceneSource, scene_in, scene_options, start_of
 from autocolor.errors import AutocolorError, InputError, UsageError
 from ramtek_emu.command_line import tell
 from ramtek_emu.writing import same_outputs
@@ -42,8 +34,6 @@ Examples:
   autocolor sweep scenes/coupe --table looks.csv -o looks/{name}.png --jobs 4 --resume
 """
 
-MOST_JOBS: Final = 256
-
 vary_option = option(
     "--vary varies",
     "KEY=VALUES",
@@ -61,9 +51,7 @@ table_option = option(
     " cell leaves a field as it is. The keys name and time are optional.",
 )
 
-jobs_option = option(
-    "--jobs", "N", "Make pictures in so many processes.", click.IntRange(1, MOST_JOBS), default=1
-)
+jobs_option = option("--jobs", "N", "Make pictures in so many processes.", click.IntRange(1, 256), default=1)
 
 
 @click.command(epilog=EXAMPLES)
@@ -83,10 +71,9 @@ jobs_option = option(
 )
 @option("--made", "CSV", "Write a table of the pictures and the problems.")
 @jobs_option
-@click.option(
+@flag(
     "--resume",
-    is_flag=True,
-    help="Go on with a batch that was stopped: skip each picture that is whole and was made from the same"
+    "Go on with a batch that was stopped: skip each picture that is whole and was made from the same"
     " scene and settings, and replace the others.",
 )
 @option("--level", "0-9", "Compression of PNG files: 0 is the fastest, 9 the smallest.", click.IntRange(0, 9))
@@ -173,29 +160,6 @@ def started(
             sentences |= dict.fromkeys(unset_paints(scene_in(start), edited))
     tell(*(f"autocolor: {sentence}" for sentence in sentences))
     return start, tables, code
-
-
-def start_of(source: SceneSource) -> tuple[Scene | SavedPicture, int]:
-    """The scene, or the picture with its scene, of a command line, and the exit code of its repairs."""
-    from autocolor.commands.recolor import recolored
-    from autocolor.files.opening import is_picture
-    from autocolor.files.picture_file import read_picture
-
-    if not is_picture(Path(source.path)):
-        scene, report = read_edited(source)
-        return scene, ended(report, source)
-    if source.normals:
-        raise UsageError(
-            "--normals is for a scene, not for a picture file, which has no normals; leave it out"
-        )
-    saved = read_picture(source.path)
-    scene = with_held_exposure(saved.scene, saved.picture) if source.hold_exposure else saved.scene
-    return saved._replace(scene=recolored(scene, None, {}, source.settings)), 0
-
-
-def scene_in(start: Scene | SavedPicture) -> Scene:
-    """The scene, or the scene of a picture."""
-    return start.scene if isinstance(start, tuple) else start
 
 
 def print_counts(results: list[Result], strict: bool) -> int:

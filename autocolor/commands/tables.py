@@ -8,7 +8,7 @@ from typing import Final
 
 import click
 
-from autocolor.commands.options import force_option, json_option
+from autocolor.commands.options import flag, force_option, json_option
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from ramtek_emu.command_line import tell
@@ -23,7 +23,7 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options()
-@click.option("--write", is_flag=True, help="Write a scene.toml beside SCENE instead of printing it.")
+@flag("--write", "Write a scene.toml beside SCENE instead of printing it.")
 @force_option
 @json_option
 def tables(source: SceneSource, write: bool, force: bool, as_json: bool) -> int:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 import click
 
-from autocolor.commands.options import bringing_paints, option, paints_option, recover_option
+from autocolor.commands.options import bringing_paints, flag, option, paints_option, recover_option
 from autocolor.commands.scenes import SceneSource, ended, scene_options, session_of
 from autocolor.errors import UsageError
 
@@ -38,11 +38,11 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @scene_options("settings", "normals", "paper", required=False)
 @recover_option
-@click.option("--sessions", is_flag=True, help="List the sessions that were not closed, and exit.")
+@flag("--sessions", "List the sessions that were not closed, and exit.")
 @option("--forget", "SESSION", "Remove a session that was not closed, and exit.", str)
 @paints_option
-@click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
-@click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
+@flag("--full-screen", "Open the window in full screen.")
+@flag("--fit", "Scale the picture to fill the window; pixels may become uneven.")
 def view(
     source: SceneSource,
     paints: str | None,

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 from autocolor.commands.autocolor import AutocolorGroup
-from autocolor.files.opening import TWO_TABLES
 from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 from tests.autocolor.commands.test_view import monitors as monitors
 from tests.tables import first
@@ -146,7 +145,6 @@ def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
     ("line", "sentence"),
     [
         ("rendr two.obj", "there is no command 'rendr'; did you mean 'render'?"),
-        ("info n.csv p.csv", f"n.csv p.csv: two tables must be one argument, not two; {TWO_TABLES}"),
         ("info", "Missing argument 'SCENE'."),
         ("info two.obj more", "Got unexpected extra argument (more)"),
     ],

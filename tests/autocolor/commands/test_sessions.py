@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 
 from autocolor import UsageError, read_journal, read_scene
-from autocolor.commands.sessions import NEWEST, OLD, autosaved_session, chosen_session
+from autocolor.commands.sessions import autosaved_session, chosen_session
 from autocolor.journal import autosave
-from autocolor.journal.autosave import JOURNAL, OLD_SCRIPT
+from autocolor.journal.autosave import JOURNAL
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.screens.viewer import Viewer
@@ -190,18 +190,6 @@ def test_sessions_are_listed_with_their_scene_and_steps(sessions: Path, folder: 
     assert "  session.jsonl: " in lines[0]
     assert lines[1].endswith(f"  {folder / 'scene'}, 2 steps")
     assert lines[2].endswith(f"  {folder / 'scene'}, 1 step")
-
-
-def test_a_session_of_an_older_version_is_listed_and_forgotten_but_not_recovered(
-    sessions: Path, run: Run, refused: Refused, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (sessions / "2026-01-02-c" / JOURNAL).rename(sessions / "2026-01-02-c" / OLD_SCRIPT)
-    assert run("view", "--sessions").out.splitlines()[0].endswith(f"  {OLD}")
-    assert refused("view --recover 2026-01-02-c", 65) == OLD
-    assert chosen_session(NEWEST)[0] == sessions / "2026-01-02-b"
-    assert capsys.readouterr().err == f"autocolor: {sessions / '2026-01-02-c'}: {OLD}\n"
-    assert run("view", "--forget", "2026-01-02-c").code == 0
-    assert not (sessions / "2026-01-02-c").exists()
 
 
 def link_folder(session: Path, precious: Path) -> None:
