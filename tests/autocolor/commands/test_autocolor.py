@@ -135,12 +135,6 @@ for command in {["", *AutocolorGroup.table]!r}:
     assert [line for line in ran.err.splitlines() if not line.endswith(" []")] == []
 
 
-def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
-    ran = run("--version")
-    assert (ran.code, ran.err) == (0, "")
-    assert ran.out.strip()
-
-
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [
@@ -151,23 +145,6 @@ def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
 )
 def test_a_wrong_command_line_is_refused(refused: Refused, line: str, sentence: str) -> None:
     assert refused(line, 2) == f"Error: {sentence}"
-
-
-def raising(error: BaseException) -> object:
-    def fail(*_: object) -> None:
-        raise error
-
-    return fail
-
-
-def test_a_fault_of_ours_is_said_to_be_one(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autocolor.rendering.render", raising(ZeroDivisionError("of ours")))
-    expected = (
-        "autocolor: a fault of this program, not of yours: ZeroDivisionError: of ours;"
-        " add --debug for the traceback and report it\n"
-    )
-    assert run("info", "two.obj") == (70, "", expected)
-    assert "Traceback" in run("info", "two.obj", "--debug").err
 
 
 # What only a process of its own shows.

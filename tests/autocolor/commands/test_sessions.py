@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -197,16 +196,6 @@ def link_folder(session: Path, precious: Path) -> None:
     session.symlink_to(precious)
 
 
-def link_file(session: Path, precious: Path, name: str = JOURNAL) -> None:
-    (session / name).unlink(missing_ok=True)
-    (session / name).symlink_to(precious / JOURNAL)
-
-
-def make_folder(session: Path, _: Path) -> None:
-    (session / JOURNAL).unlink()
-    (session / JOURNAL).mkdir()
-
-
 def make_pipe(session: Path, _: Path) -> None:
     (session / JOURNAL).unlink()
     os.mkfifo(session / JOURNAL)
@@ -214,12 +203,7 @@ def make_pipe(session: Path, _: Path) -> None:
 
 HOSTILE: dict[str, tuple[Callable[[Path, Path], object], str]] = {
     "a link": (link_folder, "hostile: it must not be a link; "),
-    "a journal that is a link": (link_file, "session.jsonl: it must not be a link; "),
-    "a lock that is a link": (partial(link_file, name="lock"), "lock: it must not be a link; "),
-    "a scene that is a link": (partial(link_file, name="scene-2"), ", 1 step"),
-    "a lock that is a folder": (lambda session, _: (session / "lock").mkdir(), ", 1 step"),
     "no journal": (lambda session, _: (session / JOURNAL).rename(session / "x"), "there is no such file"),
-    "a journal that is a folder": (make_folder, "must be a regular file"),
     "a journal that is a pipe": (make_pipe, "must be a regular file"),
     "an endless time": (lambda session, _: os.utime(session / JOURNAL, (1 << 60, 1 << 60)), ", 1 step"),
 }
