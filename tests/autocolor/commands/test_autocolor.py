@@ -135,18 +135,6 @@ for command in {["", *AutocolorGroup.table]!r}:
     assert [line for line in ran.err.splitlines() if not line.endswith(" []")] == []
 
 
-@pytest.mark.parametrize(
-    ("line", "sentence"),
-    [
-        ("rendr two.obj", "there is no command 'rendr'; did you mean 'render'?"),
-        ("info", "Missing argument 'SCENE'."),
-        ("info two.obj more", "Got unexpected extra argument (more)"),
-    ],
-)
-def test_a_wrong_command_line_is_refused(refused: Refused, line: str, sentence: str) -> None:
-    assert refused(line, 2) == f"Error: {sentence}"
-
-
 # What only a process of its own shows.
 
 AT_AN_IMPORT = """
@@ -170,8 +158,6 @@ main()
         ("autocolor", "click", -2),
         ("autocolor", "numpy", 130),
         pytest.param("autocolor", "autocolor.commands.autocolor", -2, marks=pytest.mark.thorough),
-        pytest.param("autocolor", "ramtek_emu.command_line", -2, marks=pytest.mark.thorough),
-        pytest.param("autocolor", "autocolor.commands.render", 130, marks=pytest.mark.thorough),
         pytest.param("ramtek_emu", "click", -2, marks=pytest.mark.thorough),
     ],
 )

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import write_palette
-from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
+from tests.autocolor.commands.conftest import SMALL, Run, is_same
 
 
 def settings(*texts: str) -> list[str]:
@@ -84,52 +84,3 @@ def test_every_command_with_settings_tells_once_what_a_ramp_unsets(saved: Path, 
     (saved.parent / "scene.png").unlink()
     ran = run(*line.split(), "--set", "surfaces.side.ramp=red,blue")
     assert (ran.code, ran.err.count(RAMP)) == (0, 1)
-
-
-NO_SURFACE = (
-    "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE body"
-    " --object navy"
-)
-RENDERS = (
-    "--set: a setting of a picture must need no rendering, such as colors, the mapping, or limits and bands"
-    " of a scalar; use it with `autocolor render`"
-)
-
-
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        ("scene.npz", 2, NO_SURFACE),
-        ("scene.npz --object navy --set mapping=gamma", 2, NO_SURFACE),
-        ("scene.npz --palette one.csv --set mapping=gamma", 2, NO_SURFACE),
-        ("scene.npz --set ambient=0.5", 2, RENDERS),
-        ("scene.npz --set scalar.name=x", 2, RENDERS),
-        (
-            "scene.npz side --palette one.csv --blend 1",
-            2,
-            "--palette gives all colors of a surface; leave the other options of colors out",
-        ),
-        (
-            "scene.npz side --palette one.csv",
-            65,
-            "one.csv: a ramp must have 2 to 1,024 colors, not 1; use --object for a single color",
-        ),
-        (
-            "scene.npz side --palette many.csv",
-            65,
-            "many.csv: a ramp must have 2 to 1,024 colors, not 1,025; choose some of them",
-        ),
-        ("scene.npz side --palette no.gpl", 66, ""),
-        ("scene.npz sid", 2, ""),
-        ("scene.npz side --blend much", 2, ""),
-        ("scene.npz side --ramp #200,#f60 --blend 0", 2, ""),
-        ("two.obj side", 65, ""),
-        ("scene.npz side -o new.gif", 2, ""),
-    ],
-)
-def test_what_is_refused_writes_nothing(
-    saved: Path, refused: Refused, line: str, code: int, sentence: str
-) -> None:
-    write_palette("one.csv", ["red"])
-    write_palette("many.csv", ["red"] * 1025)
-    assert refused(f"recolor {line}", code).startswith(sentence)

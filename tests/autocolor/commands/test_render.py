@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, demo, image, images, read_picture, read_scene, write_scene
+from autocolor import MissingInputError, Studio, demo, image, images, read_picture, read_scene, write_scene
 from autocolor.commands.render import render as command
 from autocolor.images import SMOOTHNESSES
 from ramtek_emu import Ramtek9300
@@ -89,40 +89,18 @@ def test_with_a_held_exposure_one_light_of_two_is_darker(folder: Path, run: Run)
     assert dark.sum() < 0.9 * bright.sum()
 
 
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        *((f"scene --smooth {smooth}", 2, "Error: Invalid value for '--smooth'") for smooth in ("5", "x")),
-        ("scene --size 4097x10", 2, "Error: Invalid value for '--size'"),
-        ("two.obj --up w", 2, "Error: Invalid value for '--up'"),
-        ("scene --light kye", 2, ""),
-        ("scene --view tited", 2, ""),
-        ("two.obj --set ambiet=1", 2, ""),
-        ("scene --set scalar.name=z --normals", 2, "--set: words must be 'levels' where a scalar"),
-        ("scene --set scalar.name=z --set words=normals", 2, "--set: words must be 'levels'"),
-        (
-            "scene --size 1600x1200 --smooth 4 --limit 0.5",
-            65,
-            "a picture of 1600 x 1200 pixels, each the mean",
-        ),
-        ("scene -o missing/a.png", 73, ""),
-        ("bad.obj", 65, ""),
-        ("''", 65, ""),
-    ],
-)
-def test_what_is_refused_writes_nothing(
-    folder: Path, refused: Refused, line: str, code: int, sentence: str
-) -> None:
-    (folder / "bad.obj").write_text("v 0 0\n")
-    assert refused(f"render {line}", code).startswith(sentence)
-
-
 @pytest.mark.parametrize("name", ["-x", ".hid é", "x" * 250])
 def test_names_with_spaces_dashes_dots_and_foreign_letters_are_names(
     folder: Path, run: Run, name: str
 ) -> None:
     (folder / "two.obj").rename(folder / f"{name}.obj")
     assert run("render", *SMALL, "--", f"{name}.obj") == (0, "", f"wrote {name[:100]}.png\n")
+
+
+def test_a_demo_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("autocolor.commands.demo.PLACES", (tmp_path,))
+    with pytest.raises(MissingInputError, match="install autocolor again"):
+        demo()
 
 
 # Other outputs.

@@ -9,16 +9,6 @@ from autocolor.commands.settings import with_settings
 from autocolor.files.opening import read_scene_with_report
 from autocolor.scene.defaults import default_lights, framed
 from autocolor.scene.scene import Scene
-from tests.autocolor.commands.conftest import Refused
-
-
-@pytest.mark.parametrize("command", ["render", "show --recover --to tcp://127.0.0.1:1"])
-@pytest.mark.parametrize("option", ["--up", "--scale"])
-def test_an_up_axis_and_a_scale_come_with_a_scene(command: str, option: str, refused: Refused) -> None:
-    value = "y" if option == "--up" else "0.001"
-    assert refused(f"{command} {option} {value}", 2) == (
-        f"{option} must come with a mesh file as SCENE; name a file, or leave {option} out"
-    )
 
 
 def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -21,7 +21,7 @@ from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
-from tests.autocolor.commands.conftest import ROOT, Refused, Run
+from tests.autocolor.commands.conftest import ROOT, Run
 from tests.autocolor.commands.test_view import monitors as monitors
 from tests.autocolor.journal.random_steps import journal_of
 from tests.small import SMALL, car
@@ -251,22 +251,3 @@ def test_a_session_is_gone_on_with_in_full_screen_and_removed_when_it_ends(
     assert monitors[1].caption.startswith("autocolor - scene* - ")
     assert not (sessions / "2026-01-01-a").exists()
     assert (sessions / "2026-01-02-b").exists()
-
-
-ONE = "view must have one of SCENE, --recover, --sessions and --forget, not"
-
-
-@pytest.mark.parametrize(
-    ("line", "sentence"),
-    [
-        ("", f"{ONE} 0; name a scene"),
-        ("scene --recover", f"{ONE} 2; name a scene"),
-        ("--recover --sessions --forget 2026", f"{ONE} 3; name a scene"),
-        ("--set ambient=1 --sessions", "--set is for SCENE, not for sessions; leave it out"),
-        ("--sessions --paints a.csv", "--paints is for a scene or a session that is shown; leave it out"),
-    ],
-)
-def test_a_scene_or_one_thing_with_sessions_is_asked_for(
-    sessions: Path, refused: Refused, line: str, sentence: str
-) -> None:
-    assert refused(f"view {line}", 2) == sentence

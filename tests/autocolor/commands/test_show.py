@@ -17,6 +17,7 @@ import pytest
 from autocolor import Studio, UnavailableError, read_journal, read_scene
 from autocolor.commands.demo import demo_folder
 from autocolor.commands.show import BUTTONS, attend, folder_of, session_elsewhere
+from autocolor.commands.tutorial import teach
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
 from autocolor.screens.message_line import MessagePart, lines_of_message
@@ -67,31 +68,6 @@ def test_a_picture_is_shown_once_on_a_display_behind_a_port(folder: Path, run: R
     here = Ramtek9300()
     Studio(read_scene("two.obj").replace(ambient=0.3), here)
     assert (server.display.field() == here.field()).all()
-
-
-EITHER = "show must have either SCENE or --recover; name a scene"
-OF_SCENE = "--set and --once are for SCENE, not for sessions; leave them out"
-ADDRESS = "--to: an address must be tcp://host:port"
-PAINTS = "--paints is for an interactive session, not for --once; leave one of them out"
-
-
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        (f"--to {NOWHERE}", 2, EITHER),
-        (f"scene --recover newest --to {NOWHERE}", 2, EITHER),
-        (f"--recover --once --to {NOWHERE}", 2, OF_SCENE),
-        (f"scene --paints a.gpl --once --to {NOWHERE}", 2, PAINTS),
-        ("scene --to 127.0.0.1:9300", 2, ADDRESS),
-        ("scene --to display", 2, ADDRESS),
-        ("scene", 2, "Error: Missing option '--to'"),
-        (f"scene --timeout 0.05 --to {NOWHERE}", 2, "Error: Invalid value for '--timeout'"),
-        (f"scene --to {NOWHERE}", 69, f"a display must listen at {NOWHERE}, and it is not reached"),
-        (f"--recover --to {NOWHERE}", 66, ""),
-    ],
-)
-def test_what_cannot_be_shown_is_refused(refused: Refused, line: str, code: int, sentence: str) -> None:
-    assert refused(f"show {line}", code).startswith(sentence)
 
 
 def test_paints_are_brought_to_a_display_elsewhere(
@@ -270,3 +246,18 @@ def test_a_server_that_is_no_display_is_refused(
         address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
         assert sentence in refused(f"show scene --to {address} --timeout {seconds} {options}", 69)
         thread.join(60)
+
+
+def test_it_is_taught_on_a_display_elsewhere(
+    folder: Path, run: Run, refused: Refused, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[tuple[str, str, Path, float]] = []
+
+    def session(history: History, address: str, place: Path, prepare: object, timeout: float) -> None:
+        assert prepare is teach
+        asked.append((history.scene.name, address, place, timeout))
+
+    monkeypatch.setattr("autocolor.commands.tutorial.session_elsewhere", session)
+    assert run("tutorial", "--to", "tcp://127.0.0.1:9300", "--timeout", "200").code == 0
+    assert asked == [("coupe", "tcp://127.0.0.1:9300", folder, 200.0)]
+    refused("tutorial --to 127.0.0.1", 2)

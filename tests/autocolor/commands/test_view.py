@@ -73,20 +73,6 @@ def test_paints_are_brought_along(folder: Path, run: Run, monitors: list[Any], l
     assert monitors[1].caption.endswith("a paint of few.csv: take them in color mixing")
 
 
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        ("--paints few.csv view scene", 2, "--paints before a command is for the demo; write it after"),
-        ("--paints two.obj", 65, ""),
-    ],
-)
-def test_what_cannot_be_shown_opens_no_window(
-    refused: Refused, monitors: list[Any], line: str, code: int, sentence: str
-) -> None:
-    assert refused(line, code).startswith(sentence)
-    assert len(monitors) == 1
-
-
 def test_the_input_of_the_window_reaches_the_viewer_and_its_caption_the_window() -> None:
     viewer, update = Mock(caption="one"), Mock()
     viewer.session.leaves = False
