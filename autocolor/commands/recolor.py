@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
 from autocolor.commands.completion import complete_colors, complete_surfaces
-from autocolor.commands.options import as_usage, force_option, limit_option, option, verbose_option
+from autocolor.commands.options import force_option, limit_option, option, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written
 from autocolor.commands.scenes import set_option
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from autocolor.checks import Color
-    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:
@@ -90,6 +88,7 @@ def recolor(
     --set changes any field that needs no rendering: paints, the mapping, and the color scale, limits and
     bands of a scalar.
     """
+    from autocolor.commands.settings import recolored
     from autocolor.files.paths import file_stem
     from autocolor.files.picture_file import read_picture, write_picture
     from autocolor.images import save_image
@@ -132,26 +131,3 @@ def ramp_of_file(path: str) -> tuple[Color, ...]:
         rule = f"a ramp must have 2 to {MOST_RAMP_COLORS:,} colors"
         raise InputError(f"{Path(path).name}: {rule}, not {len(colors):,}; {advice}")
     return colors
-
-
-def recolored(
-    scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
-) -> Scene:
-    """The scene with settings and other colors of a surface.
-
-    Ramps and colors that are replaced are listed on stderr. Raises UsageError if a setting needs a rendering.
-    """
-    from autocolor.commands.settings import tell_unset, with_settings
-    from autocolor.scene.columns import Tier
-    from autocolor.scene.scene import costs_at_least
-
-    edited = with_settings(scene, settings)
-    if costs_at_least(scene, edited, Tier.MIX):
-        raise UsageError(
-            "--set: a setting of a picture must need no rendering, such as colors, the mapping, or limits and"
-            " bands of a scalar; use it with `autocolor render`"
-        )
-    with as_usage():
-        painted = edited if surface is None else edited.with_surface(surface, **colors)
-    tell_unset(edited, painted)
-    return painted

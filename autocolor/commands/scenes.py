@@ -255,7 +255,7 @@ def edited(report: SceneReport, source: SceneSource) -> Scene:
 
 def start_of(source: SceneSource) -> tuple[Scene | SavedPicture, int]:
     """The scene, or the picture with its scene, of a command line, and the exit code of its repairs."""
-    from autocolor.commands.recolor import recolored
+    from autocolor.commands.settings import recolored
     from autocolor.files.opening import is_picture
     from autocolor.files.picture_file import read_picture
 

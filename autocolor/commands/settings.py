@@ -7,18 +7,20 @@ no quotes, and a list of names needs no brackets. `settings_after` lists keys an
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import accumulate
+from typing import Any
 
 from autocolor.checks import shown
+from autocolor.commands.options import as_usage
 from autocolor.errors import InputError, UsageError
 from autocolor.files.settings import UNSET, field_and_value, field_of, place_of, scene_with, value_at
 from autocolor.scene.color_scales import COLOR_SCALES
-from autocolor.scene.columns import Row, keys_of
+from autocolor.scene.columns import Row, Tier, keys_of
 from autocolor.scene.kinds import Boolean, ColorKind, CurveKind, Instance, OneOf, color_names
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, RangesByName, Referring, RowList
 from autocolor.scene.scalar import Scalar, ScaleKind
-from autocolor.scene.scene import Scene, unset_paints
+from autocolor.scene.scene import Scene, costs_at_least, unset_paints
 from ramtek_emu.command_line import tell
 
 
@@ -52,6 +54,25 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
 def tell_unset(before: Scene, after: Scene) -> None:
     """Print a line on stderr for each surface whose ramp or two colors an edit replaces."""
     tell(*(f"autocolor: {sentence}" for sentence in unset_paints(before, after)))
+
+
+def recolored(
+    scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
+) -> Scene:
+    """The scene with settings and other colors of a surface.
+
+    Ramps and colors that are replaced are listed on stderr. Raises UsageError if a setting needs a rendering.
+    """
+    edited = with_settings(scene, settings)
+    if costs_at_least(scene, edited, Tier.MIX):
+        raise UsageError(
+            "--set: a setting of a picture must need no rendering, such as colors, the mapping, or limits and"
+            " bands of a scalar; use it with `autocolor render`"
+        )
+    with as_usage():
+        painted = edited if surface is None else edited.with_surface(surface, **colors)
+    tell_unset(edited, painted)
+    return painted
 
 
 def settings_after(scene: Scene, incomplete: str) -> list[str]:

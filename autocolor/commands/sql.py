@@ -46,7 +46,6 @@ Examples:
     "--seconds",
     type=click.FloatRange(0.001, 86400),
     default=30.0,
-    show_default=True,
     help="Longest time of a statement.",
 )
 def sql(source: SceneSource, statement: str | None, write: bool, form: str | None, seconds: float) -> int:
