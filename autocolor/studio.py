@@ -604,7 +604,7 @@ class Studio(Suggesting):
     def __reduce__(self) -> NoReturn:
         raise TypeError(
             "a studio cannot be pickled or copied, because it is connected to a display; pickle its scene,"
-            " and make a Studio of that and a display"
+            " and make a Studio of that"
         )
 
     def __repr__(self) -> str:

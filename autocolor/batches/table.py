@@ -265,7 +265,8 @@ def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
     for key, values in axes.items():
         if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
             raise UsageError(
-                f"{brief(key)}: an axis must be a list of values, not {shown(values)}; write it as a list"
+                f"{brief(key)}: an axis must be a list of values or a Palette, not {shown(values)}; write it"
+                " as a list"
             )
     return products([variants_of(_rows_of(key, values, {})) for key, values in axes.items()])
 

@@ -241,7 +241,10 @@ test_wrong_variants_are_refused = refused(
         ),
         (lambda: grid({"a": []}), f"{GRID} 0; give a value for each key"),
         (lambda: grid({key: range(100) for key in "abc"}), f"{GRID} 1,000,000; give fewer values"),
-        (lambda: grid({"a": "red"}), "a: an axis must be a list of values, not 'red'; write it as a list"),
+        (
+            lambda: grid({"a": "red"}),
+            "a: an axis must be a list of values or a Palette, not 'red'; write it as a list",
+        ),
         (
             lambda: grid(["a"]),  # type: ignore[arg-type]
             "a grid must be lists of values by key, not ['a']; write it as in {'ambient': [0.1, 0.2]}",
