@@ -2,11 +2,9 @@
 
 Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
 
-    scene = autocolor.read_scene("scenes/coupe")
-    display = Ramtek9300()
-    studio = autocolor.Studio(scene, display)
+    studio = autocolor.Studio(autocolor.read_scene("scenes/coupe"))
     studio.recolor("body", object_color="#1f3f8f", blend=0.3)
-    display.save_png("coupe.png")
+    studio.save_image("coupe.png")
 """
 
 from __future__ import annotations
@@ -25,7 +23,9 @@ if TYPE_CHECKING:
     from autocolor.batches.table import grid as grid
     from autocolor.batches.table import read_variants as read_variants
     from autocolor.commands.demo import demo as demo
+    from autocolor.commands.window import view as view
     from autocolor.errors import AutocolorError as AutocolorError
+    from autocolor.errors import EditWarning as EditWarning
     from autocolor.errors import InputError as InputError
     from autocolor.errors import MissingInputError as MissingInputError
     from autocolor.errors import OutputError as OutputError
@@ -79,6 +79,7 @@ _HOME: Final = {
     "AutocolorError": "errors",
     "BlinnPhong": "scene.reflection_models",
     "CookTorrance": "scene.reflection_models",
+    "EditWarning": "errors",
     "Flap": "scene.lights",
     "Flaps": "scene.lights",
     "HalfSpace": "scene.lights",
@@ -128,6 +129,7 @@ _HOME: Final = {
     "save_words": "images",
     "scene_of": "scene.creation",
     "send_picture": "images",
+    "view": "commands.window",
     "write_palette": "files.palette_file",
     "write_picture": "files.picture_file",
     "write_rig": "files.rig_file",
@@ -144,7 +146,9 @@ _NOT_INSTALLED: Final = "0+unknown"
 def __getattr__(name: str) -> object:
     """A public name, from the module that defines it, or the version; found when it is first asked for."""
     if name not in _HOME and name != "__version__":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from autocolor.checks import missing_attribute
+
+        raise missing_attribute(f"module {__name__!r}", name, __all__)
     from importlib import import_module
 
     value = _version() if name == "__version__" else getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from numbers import Integral
-from typing import Final
+from types import MappingProxyType
+from typing import TYPE_CHECKING, ClassVar, Final, NoReturn
 
 Vector = tuple[float, float, float]
 Color = tuple[int, int, int]
@@ -91,11 +92,32 @@ OTHER_WORDS: Final = {
     "D": "diffuse",
     "N": "exponent",
     "S": "specular",
+    "brightness": "intensity",
+    "camera": "view",
     "colour": "object_color",
+    "faces": "node_numbers",
     "fov": "field_of_view",
+    "power": "intensity",
     "shininess": "exponent",
+    "vertices": "coordinates",
 }
 """The field names for symbols of the paper and for words of other programs."""
+
+FUNCTIONS: Final = {
+    "image": ("image",),
+    "load": ("read_scene",),
+    "load_mesh": ("read_scene",),
+    "open": ("read_scene",),
+    "read": ("read_scene",),
+    "read_mesh": ("read_scene",),
+    "render": ("render",),
+    "save": ("save_image", "write_scene", "write_picture"),
+    "save_image": ("save_image",),
+    "save_png": ("save_image",),
+    "show": ("image",),
+    "write": ("write_scene", "write_picture"),
+}
+"""The functions of autocolor for words of other programs, and for methods that their values do not have."""
 
 
 def nearest(name: object, names: Iterable[object]) -> str:
@@ -114,8 +136,8 @@ def closest(name: object, names: Iterable[str]) -> str:
     """The end of a message about an unknown name: the closest of `names`; empty if none is close.
 
     The order of preference: our name for another program's word; a name that differs in capitals only; a name
-    that begins with the given name; a name with the given name between underscores; the most similar
-    spelling among the first MOST_COMPARED names.
+    that begins with the given name; a name with the given name between underscores or periods; the most
+    similar spelling among the first MOST_COMPARED names.
 
     >>> closest("color", ["blend", "object_color"]), closest("N", ["exponent"])
     ("; did you mean 'object_color'?", "; did you mean 'exponent'?")
@@ -127,7 +149,46 @@ def closest(name: object, names: Iterable[str]) -> str:
         [text for text in texts if text == other]
         or [text for text in texts if text.casefold() == name.casefold()]
         or [text for text in texts if text.startswith(name)]
-        or [text for text in texts if name in text.split("_")]
+        or [text for text in texts if name in text.replace(".", "_").split("_")]
         or difflib.get_close_matches(name, texts[:MOST_COMPARED], n=1)
     )
     return f"; did you mean {close[0]!r}?" if close else ""
+
+
+def missing_attribute(
+    owner: str, name: str, names: Iterable[str], elsewhere: Mapping[str, str] = MappingProxyType({})
+) -> AttributeError:
+    """The error for an unknown attribute, with the name that was meant: a function, or one of `names`.
+
+    `elsewhere` has advice for names that mean something elsewhere.
+
+    >>> print(missing_attribute("'Scene' object", "render", []))
+    'Scene' object has no attribute 'render'; did you mean 'autocolor.render'?
+    """
+    advice = elsewhere.get(name, "")
+    if not advice and name in FUNCTIONS:
+        advice = f"; did you mean {either(f'autocolor.{each}' for each in FUNCTIONS[name])}?"
+    elif not advice and not name.startswith("_"):
+        advice = closest(name, names)
+    # Without the object, Python adds no suggestion of its own.
+    return AttributeError(f"{owner} has no attribute {name!r}{advice}", name=name)
+
+
+class Suggesting:
+    """A base class whose objects answer an unknown attribute by the name that was meant."""
+
+    elsewhere: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    """The ends of messages about names that mean something elsewhere."""
+
+    def meant(self) -> Iterable[str]:
+        """The names that may be meant."""
+        return (name for name in dir(self) if not name.startswith("_"))
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            # A property that raised AttributeError raises it again.
+            if name.startswith("_") or hasattr(type(self), name):
+                return object.__getattribute__(self, name)
+            owner = f"{type(self).__name__!r} object"
+            raise missing_attribute(owner, name, self.meant(), type(self).elsewhere)

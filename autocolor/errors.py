@@ -1,4 +1,4 @@
-"""The exceptions of autocolor, with the exit codes of commands.
+"""The exceptions of autocolor, with the exit codes of commands, and a warning.
 
 A message names the thing, the rule that it breaks, its value, its place, and what to do.
 """
@@ -6,6 +6,7 @@ A message names the thing, the rule that it breaks, its value, its place, and wh
 from __future__ import annotations
 
 from collections.abc import Iterable
+from warnings import warn
 
 from ramtek_emu.errors import escaped
 
@@ -58,6 +59,17 @@ class WriteError(AutocolorError):
     """A write that failed; the previous content of the file is intact."""
 
     exit_code = 74
+
+
+class EditWarning(UserWarning):
+    """An edit that no picture shows: of a surface without polygons, or to values that are there already."""
+
+
+def warn_of_edit(sentence: str) -> None:
+    """Issue an EditWarning, unless the sentence is empty, at the line that called a method of a studio."""
+    if sentence:
+        # Between are this function, the method, and the function around it (see `threads`).
+        warn(sentence, EditWarning, stacklevel=4)
 
 
 def reason_of(cause: Exception) -> str:

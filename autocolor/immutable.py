@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from autocolor.arrays import AnyArray
+from autocolor.checks import Suggesting
 
 Self = TypeVar("Self", bound="Immutable")
 SomeArray = TypeVar("SomeArray", bound=AnyArray)
@@ -24,7 +25,7 @@ def read_only(array: SomeArray) -> SomeArray:
     return array
 
 
-class Immutable:
+class Immutable(Suggesting):
     """A base class of frozen dataclasses, some of whose fields may be arrays.
 
     Unpickled arrays are writable, so `__setstate__` makes them read-only again. With `repr=False` in the

@@ -33,26 +33,27 @@ from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
-from autocolor.checks import nearest, shown
-from autocolor.errors import AutocolorError, UsageError
+from autocolor.checks import Suggesting
+from autocolor.errors import AutocolorError, UsageError, warn_of_edit
 from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
-from autocolor.images import display_image
+from autocolor.images import display_image, save_image
 from autocolor.journal.history import History, is_picture
 from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
-from autocolor.mapping.intensity import held_exposure, is_held, stage_surfaces
+from autocolor.mapping.intensity import held_exposure, stage_surfaces
 from autocolor.mapping.ranges import LevelRange
 from autocolor.rendering import Rendering, block_for, blocks_of, rendering, sees_the_same
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
-from autocolor.scene.columns import Tier, fields_of
-from autocolor.scene.scene import AUTO, LEVELS, NORMALS, Scene, cost_of_edit
-from autocolor.scene.surfaces import Paint
-from autocolor.sending import configuration_of, send_image, shown_colors
+from autocolor.scene.columns import Tier
+from autocolor.scene.scene import LEVELS, NORMALS, Scene, cost_of_edit, unseen_recoloring
+from autocolor.sending import send_image, shown_colors
+from autocolor.threads import alone, for_one_thread
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
-from ramtek_emu import HostPort
+from autocolor.web.notebook import WidgetPort
+from ramtek_emu import HostPort, Ramtek9300
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -63,18 +64,25 @@ if TYPE_CHECKING:
     from autocolor.journal.saving import SavedFiles
     from autocolor.scene.changes import SceneChanges
     from autocolor.scene.creation import SurfaceSource
-    from autocolor.web.notebook import WidgetPort
 
 
-class Studio:
+@for_one_thread
+class Studio(Suggesting):
     """A scene shown on a display, which can be edited step by step, with undo and redo.
 
-    `display` is a host port: a `Ramtek9300`, a `TcpPort` to one, or a `Recorder`. It is reset and sent the
-    whole picture; each edit then sends only what changed. An edit that raises an error changes nothing.
+    `display` is a host port: a `Ramtek9300`, which is also made if none is given, a `TcpPort` to one, or a
+    `Recorder`. It is reset and sent the whole picture; each edit then sends only what changed. An edit that
+    raises an error changes nothing. While a thread is in a method of the studio, any method raises UsageError
+    in another thread.
     """
 
     def __init__(
-        self, scene: Scene | History, display: HostPort, *, limit: float | None = None, sends: bool = True
+        self,
+        scene: Scene | History,
+        display: HostPort | None = None,
+        *,
+        limit: float | None = None,
+        sends: bool = True,
     ) -> None:
         """Show a scene, or go on with a session, such as the history of a journal.
 
@@ -84,10 +92,9 @@ class Studio:
         self._limit = validated_limit(limit)
         self._history = scene if isinstance(scene, History) else History(scene)
         scene = self._history.scene
-        configuration = configuration_of(display)
-        self._display = display
-        self._widgets: WidgetPort | None = None
-        self._size = configuration.shown_lines, configuration.shown_elements
+        self._display = Ramtek9300() if display is None else display
+        self._port = WidgetPort(self, self._display)
+        self._size = self._port.configuration.shown_lines, self._port.configuration.shown_elements
         begun = perf_counter()
         self._rendering = self._rendered(scene, *self._size)
         self._shown = display_image(scene, self._rendering.picture)
@@ -96,6 +103,11 @@ class Studio:
         self.sends = sends
         if sends:
             self.send_everything()
+
+    @property
+    def display(self) -> HostPort:
+        """The display that shows the scene."""
+        return self._display
 
     @property
     def scene(self) -> Scene:
@@ -182,22 +194,20 @@ class Studio:
         """
         self.edit(highlight_placed(self.scene, self.seen_at(line, element), light))
 
-    def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:
+    def recolor(self, surface: str, /, *colors: NoReturn, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; this sends entries, but no words.
 
         `changes` are fields of its Paint: object_color and light_color ("#rrggbb", a name, or three whole
         numbers), blend, light_percentage; or a ramp. A ramp replaces the two colors and their blend, and any
-        of these replaces a ramp; the others then have their defaults.
+        of these replaces a ramp; the others then have their defaults. An EditWarning says if the surface has
+        these colors already, or no polygons.
 
             studio.recolor("body", ramp=["#200", "#f60", "#fff"])
         """
-        fields = fields_of(Paint)
-        for name in changes:
-            if name not in fields:
-                raise UsageError(f"recolor takes fields of a Paint, not {name!r}{nearest(name, fields)}")
-        scene = self.scene.with_paint(surface, **changes)
+        scene = self.scene.with_paint(surface, *colors, **changes)
+        warn_of_edit(unseen_recoloring(self.scene, scene, surface))
         if scene is not self.scene:
-            self._take(scene, Tier.ENTRIES)
+            self._show_scene(scene, lambda: self._history.take(scene), Tier.ENTRIES)
 
     def surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
         """Change fields of a surface, including those of its reflectance and its paint."""
@@ -278,23 +288,7 @@ class Studio:
 
         If only ranges of some surfaces are held, all ranges follow the picture again.
         """
-        if not is_held(self.scene.exposure):
-            if not isinstance(self.scene.exposure, str):
-                self.edit(self.scene.replace(exposure=self.following_exposure))
-            return
-        names = {surface.name for surface in self.scene.surfaces}
-        befores = [
-            exposure
-            for exposure in (AUTO, *(scene.exposure for scene in self._history.earlier))
-            if not is_held(exposure) and (isinstance(exposure, str) or dict(exposure).keys() <= names)
-        ]
-        self.edit(self.scene.replace(exposure=befores[-1]))
-
-    @property
-    def following_exposure(self) -> str:
-        """The exposure by which all ranges last followed the picture: "auto" or a percentage."""
-        exposures = (scene.exposure for scene in reversed(self._history.earlier))
-        return next((exposure for exposure in exposures if isinstance(exposure, str)), AUTO)
+        self.edit(self.scene.replace(exposure=self._history.released_exposure))
 
     def edit(self, scene: Scene, same_step: bool = False, moving: bool = False) -> None:
         """Make a scene the current one; nothing happens if it equals the current one.
@@ -305,7 +299,7 @@ class Studio:
         """
         costs = cost_of_edit(self.scene, scene)
         if costs is not None:
-            self._take(scene, costs, same_step, moving)
+            self._show_scene(scene, lambda: self._history.take(scene, same_step), costs, moving)
 
     @property
     def is_coarse(self) -> bool:
@@ -316,7 +310,7 @@ class Studio:
         """Compute a coarse picture again at all lines and elements, and send it; the scene stays."""
         if self.is_coarse:
             self._show(self.scene, Tier.FRAME)
-            self._refresh_widgets()
+            self._port.refresh()
 
     def undo(self, steps: int = 1) -> bool:
         """Undo the last step, or some steps at once; returns False if there are not so many."""
@@ -452,6 +446,17 @@ class Studio:
                 self.undo()
             raise
 
+    def save_image(
+        self, path: str | PathLike[str], *, smooth: int | None = None, overwrite: bool = False
+    ) -> None:
+        """Write the scene to a PNG file for people, as large as the display, with the legend of a scalar.
+
+        Each pixel is the mean of `smooth` x `smooth` pixels, by default of 2 x 2. With 1, it is the image on
+        the display. Raises the errors of `autocolor.save_image`.
+        """
+        with allowing(self._limit):
+            save_image(path, self.scene, size=self._size[::-1], smooth=smooth, overwrite=overwrite)
+
     def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
         """Mark the current scene as saved to files, by their paths and stamps (see `files.stamps`).
 
@@ -506,7 +511,21 @@ class Studio:
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
         send_image(self._port, self._shown)
-        self._refresh_widgets()
+        self._port.refresh()
+
+    def view_window(self, *, full_screen: bool = False, fit: bool = False) -> None:
+        """Edit the scene in an interactive window until the user closes it; F1 there lists the keys.
+
+        The steps of the user are steps of the studio, and the display then shows the scene. With `fit`, the
+        picture fills the window, and its pixels may become uneven. Raises UnavailableError without a screen.
+        """
+        from autocolor.commands.window import show_steps
+
+        try:
+            with allowing(self._limit):
+                show_steps(self._history, full_screen, fit, outlives_window=True)
+        finally:
+            self._show_scene(self._history.scene, lambda: None)
 
     def widget(self) -> AnyWidget:
         """A widget for a notebook, which shows the studio and edits it: an `anywidget.AnyWidget`.
@@ -515,37 +534,14 @@ class Studio:
         an edit of the studio, which `undo` undoes, and every edit shows in all widgets of the studio. `close`
         ends a widget. Raises UnavailableError without the package anywidget (extra `notebook`).
         """
-        from autocolor.web.notebook import WidgetPort
-
-        if self._widgets is None:
-            self._widgets = WidgetPort(self, self._display)
-        return self._widgets.new_widget()
-
-    @property
-    def _port(self) -> HostPort:
-        """The host port that the studio sends to: its display, and its widgets if it has had any."""
-        return self._display if self._widgets is None else self._widgets
-
-    def _refresh_widgets(self) -> None:
-        if self._widgets is not None:
-            self._widgets.refresh()
-
-    def _take(self, scene: Scene, costs: Tier, same_step: bool = False, moving: bool = False) -> None:
-        """Show a scene, which an edit of this cost made, and add the step to the history."""
-        self._show(scene, costs, moving)
-        self._history.take(scene, same_step)
-        self._refresh_widgets()
+        return self._port.new_widget()
 
     def _step(self, scenes: Sequence[Scene], move: Callable[[], None], steps: int) -> bool:
         """Show the scene that is some steps from the end, and move there in the history by these steps.
 
         Returns False if there are not so many.
         """
-        if not isinstance(steps, int) or steps < 1:
-            raise UsageError(
-                f"steps must be a whole number of at least 1, not {shown(steps)}; leave it out for 1"
-            )
-        if steps > len(scenes):
+        if not 1 <= steps <= len(scenes):
             return False
 
         def note() -> None:
@@ -555,11 +551,13 @@ class Studio:
         self._show_scene(scenes[-steps], note)
         return True
 
-    def _show_scene(self, scene: Scene, note: Callable[[], object]) -> None:
+    def _show_scene(
+        self, scene: Scene, note: Callable[[], object], costs: Tier | None = None, moving: bool = False
+    ) -> None:
         """Show a scene, then note the step in the history, and refresh the widgets."""
-        self._show(scene, cost_of_edit(self.scene, scene) or Tier.NOTHING)
+        self._show(scene, costs or cost_of_edit(self.scene, scene) or Tier.NOTHING, moving)
         note()
-        self._refresh_widgets()
+        self._port.refresh()
 
     def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
         """Compute and send the difference to another scene. An error leaves the session unchanged."""
@@ -588,6 +586,7 @@ class Studio:
         with allowing(self._limit):
             return rendering(scene, lines, elements, before)
 
+    @alone
     def _render_lights(self) -> None:
         """Render the edits of lights since words stand for normals; nothing is sent."""
         shown = self._shown
@@ -605,7 +604,7 @@ class Studio:
     def __reduce__(self) -> NoReturn:
         raise TypeError(
             "a studio cannot be pickled or copied, because it is connected to a display; pickle its scene,"
-            " and make a Studio of that and a display"
+            " and make a Studio of that"
         )
 
     def __repr__(self) -> str:

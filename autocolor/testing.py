@@ -473,7 +473,7 @@ def check_recoloring_moves_no_word(
 
         @given(recolorings())
         def test_recoloring_in_a_session_writes_no_word(recoloring):
-            check_recoloring_moves_no_word(Studio(my_scene(), Ramtek9300()), recoloring)
+            check_recoloring_moves_no_word(Studio(my_scene()), recoloring)
     """
     __tracebackhide__ = True  # pytest then points to the test.
     before, after = _states(subject, edit, picture)

@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import autocolor
-from autocolor.commands.view import connected
+from autocolor.commands.window import connected
 from autocolor.screens.viewer import Viewer
 from benchmarks.hills import hills, side_of
 from benchmarks.movement import screen

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import autocolor
-from autocolor.commands.view import connected
+from autocolor.commands.window import connected
 from autocolor.screens.viewer import Viewer
 from benchmarks.cases import Spread, spread
 from benchmarks.hills import hills, side_of

@@ -15,7 +15,6 @@ import numpy as np
 
 import autocolor
 from autocolor import Variant
-from ramtek_emu import Ramtek9300
 
 COLORS = autocolor.read_palette(Path(__file__).with_name("paints.gpl"))
 FINISHES: dict[str, dict[str, Any]] = {
@@ -35,7 +34,7 @@ FORM = 16.0
 
 def main(folder: Path = Path()) -> None:
     """Write the contact sheet, and print how many paints show the form."""
-    studio = autocolor.Studio(autocolor.demo(), Ramtek9300())
+    studio = autocolor.Studio(autocolor.demo())
     car, (first, levels) = studio.scene, studio.level_ranges["body"]
     pixels = np.bincount(studio.words.ravel(), minlength=1024)[first : first + levels]
     share = pixels / pixels.sum()

@@ -138,8 +138,12 @@ class Ramtek9300:
         """The bits of the interface's status register."""
         return self.processor.status
 
-    def save_png(self, path: str | PathLike[str], overwrite: bool = True) -> None:
-        """Write the field to a PNG file, whole or not at all; OutputError or WriteError if it fails."""
+    def save_png(self, path: str | PathLike[str], overwrite: bool = False) -> None:
+        """Write the field to a PNG file, whole or not at all.
+
+        Raises OutputError for a name that does not end in .png, and if no file can be created there;
+        OutputExistsError if the file exists and `overwrite` is false; WriteError if writing fails.
+        """
         from ramtek_emu.png import save_png
 
         save_png(self.field(), path, overwrite)

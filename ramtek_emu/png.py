@@ -12,7 +12,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from ramtek_emu.arrays import Colors, Words
-from ramtek_emu.writing import write_atomically, write_numbered
+from ramtek_emu.writing import PNG, check_suffix, write_atomically, write_numbered
 
 LEVEL: Final = 4
 """The compression of a PNG file by default: from 0, fastest, to 9, smallest.
@@ -79,11 +79,16 @@ def _saved(image: Image.Image, chunks: PngInfo | None = None) -> bytes:
     return buffer.getvalue()
 
 
-def save_png(field: Colors, path: str | PathLike[str], overwrite: bool = True) -> None:
-    """Write a field to a PNG file, whole or not at all; OutputExistsError, OutputError or WriteError."""
+def save_png(field: Colors, path: str | PathLike[str], overwrite: bool = False) -> None:
+    """Write a field to a PNG file, whole or not at all.
+
+    Raises OutputError for a name that does not end in .png, and if no file can be created there;
+    OutputExistsError if the file exists and `overwrite` is false; WriteError if writing fails.
+    """
+    check_suffix(path, PNG, "a picture")
     write_atomically(path, png_bytes(field), overwrite=overwrite)
 
 
 def save_numbered(field: Colors, folder: Path, name: str) -> Path:
     """Write a field to NAME-0001.png or the next free number; see `write_numbered`."""
-    return write_numbered(png_bytes(field), folder, name, ".png")
+    return write_numbered(png_bytes(field), folder, name, PNG)

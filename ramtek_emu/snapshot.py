@@ -41,7 +41,7 @@ from ramtek_emu.processor.environment_executors import MOST_SAVED
 from ramtek_emu.processor.processor import Processor, Status
 from ramtek_emu.timing import Timing
 from ramtek_emu.video.beam import Beam
-from ramtek_emu.writing import write_atomically
+from ramtek_emu.writing import PNG, check_suffix, write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"
 """The text chunk `Software`; the number is the version of the format.
@@ -50,13 +50,18 @@ The file keeps some names of that version: "glass" for the monitor image, "named
 """
 
 
-def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = True) -> None:
-    """Write a snapshot to a file, whole or not at all; OutputExistsError, OutputError or WriteError."""
+def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = False) -> None:
+    """Write a snapshot to a PNG file, whole or not at all.
+
+    Raises OutputError for a name that does not end in .png, and if no file can be created there;
+    OutputExistsError if the file exists and `overwrite` is false; WriteError if writing fails.
+    """
     if not isinstance(display, Ramtek9300):
         raise SnapshotError(
             f"a snapshot must be of a Ramtek9300, not of a {type(display).__name__}; "
             "give the display first, then the path"
         )
+    check_suffix(path, PNG, "a snapshot")
     write_atomically(path, snapshot_bytes(display), overwrite=overwrite)
 
 

@@ -23,6 +23,9 @@ from typing import Final
 
 from ramtek_emu.errors import OutputError, OutputExistsError, WriteError, reason_of
 
+PNG: Final = ".png"
+"""The suffix of pictures and of snapshots."""
+
 NO_PLACE: Final = (
     errno.ENOENT,
     errno.ENOTDIR,
@@ -164,6 +167,12 @@ def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
         raise OutputError(
             f"a file name must be valid on this system, not {str(path)!r}; choose another name"
         ) from None
+
+
+def check_suffix(path: str | os.PathLike[str], suffix: str, what: str) -> None:
+    """Raise OutputError if the name of a file does not end in a suffix; `what` is written to it."""
+    if Path(path).suffix.lower() != suffix:
+        raise OutputError(f"{what} must be written to a file that ends in {suffix}, not to {path}; rename it")
 
 
 def same_outputs(paths: Iterable[str]) -> tuple[str, str] | None:

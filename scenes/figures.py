@@ -173,7 +173,7 @@ class Sheet:
         if self.reduction > 1:
             # Components that are off by 1 at most are not seen, and take a third less space.
             field = ((field.astype(np.uint16) + 1) // 3 * 3).astype(np.uint8)
-        save_png(field, self.folder / name)
+        save_png(field, self.folder / name, overwrite=True)
         print(self.folder / name)
 
 

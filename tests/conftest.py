@@ -66,6 +66,11 @@ if len(tempfile.gettempdir()) > 20 and os.access("/tmp", os.W_OK):
 os.environ["COLUMNS"] = "80"
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    # A random edit may change nothing.
+    config.addinivalue_line("filterwarnings", "ignore::autocolor.EditWarning")
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the tests of properties."""

@@ -17,13 +17,14 @@ ROOT = Path(__file__).resolve().parents[1]
 
 PUBLIC_NAMES = {
     "autocolor": [
-        "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "HalfSpace", "InputError",
+        "AutocolorError", "BlinnPhong", "CookTorrance", "EditWarning", "Flap", "Flaps", "HalfSpace",
+        "InputError",
         "LevelRange", "Light", "Mesh", "MeshScalar", "MissingInputError", "NamedView", "OutputError", "Paint",
         "Palette", "Part", "Phong", "Picture", "Reflectance", "Rig", "Scalar", "Scene", "Studio", "Surface",
         "UnavailableError", "UsageError", "Variant", "VariantWarning", "View", "WriteError", "animate",
         "batch", "batch_results", "demo", "frames", "grid", "image", "open_tables", "read_journal",
         "read_palette", "read_picture", "read_rig", "read_scene", "read_variants", "render", "save_image",
-        "save_layers", "save_page", "save_words", "scene_of", "send_picture", "write_palette",
+        "save_layers", "save_page", "save_words", "scene_of", "send_picture", "view", "write_palette",
         "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
@@ -37,7 +38,8 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "immutable", "checks", "budget", "scene", "visibility", "scalars",
+        "errors", "logs", "arrays", "checks", "immutable", "budget", "threads", "scene", "visibility",
+        "scalars",
         "lighting", "mapping", "files", "rendering", "sending", "images", "layers", "batches", "explanation",
         "journal", "web", "studio", "testing", "widgets", "screens", "commands", "__main__",
     ),
@@ -64,6 +66,9 @@ DOORS_OF_THE_DISPLAY = {
     "ramtek_emu.monitor.window", "ramtek_emu.png", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "platformdirs", "pygame"}
+
+WINDOW_OF_THE_STUDIO = ("autocolor.studio", "autocolor.commands.window")
+"""The one import from a wing below: a studio opens a window on itself when it is asked to."""
 
 PLACES = {
     ("pygame",): {("ramtek_emu.monitor.glass", True)},
@@ -122,7 +127,10 @@ def imports_in(nodes: list[ast.stmt], at_once: bool = True) -> Iterator[Import]:
                     yield from imports_in(body, inner)
 
 
-IMPORTS = {name: list(imports_in(tree.body)) for name, tree in TREES.items()}
+IMPORTS = {
+    name: [i for i in imports_in(tree.body) if (name, i.target, i.at_once) != (*WINDOW_OF_THE_STUDIO, False)]
+    for name, tree in TREES.items()
+}
 
 
 def top(name: str) -> str:

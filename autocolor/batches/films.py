@@ -16,6 +16,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from autocolor.batches.frames import frames_of_tracks
 from autocolor.batches.making import Batch, Source, batch_results, checked_batch, scene_and_picture
 from autocolor.batches.runs import Start, tier_of
 from autocolor.batches.table import Result, Rows, Variant, variants_of
@@ -54,10 +55,11 @@ class Film(NamedTuple):
 
 def animate(
     source: Source,
-    frames: Rows,
+    variants: Rows,
     path: str | PathLike[str],
     *,
-    frames_per_second: float = FRAMES_PER_SECOND,
+    frames: int | None = None,
+    fps: float = FRAMES_PER_SECOND,
     loop: bool = True,
     size: tuple[int, int] | None = None,
     smooth: int | None = None,
@@ -65,13 +67,20 @@ def animate(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> Film:
-    """Write the frames of an animation to a file; its suffix gives the format.
+    """Write variants as the frames of an animation to a file; its suffix gives the format.
 
+        paints = [{"surfaces.body.object_color": color} for color in ("red", "navy", "red")]
+        autocolor.animate(scene, paints, "paints.webp", frames=48)
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 
+    Without `frames`, each variant is a frame; otherwise there are so many frames from the first variant to
+    the last, as the function `frames` makes them. `fps`, the frames per second, is 0.1 to 100, and at most 50
+    for a GIF.
+
     A frame costs its edit from the frame before. Memory is bounded, because frames are written as they are
-    made; only a stream is in memory until its end. `frames_per_second` is 0.1 to 100, and at
-    most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are as in `batch`.
+    made; only a stream is in memory until its end. With `loop`, a film begins again at its end. `size` and
+    `smooth` are as in `batch`.
+
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
     has the words of the first frame and then a load of the lookup table for each frame; it is never smooth.
 
@@ -82,21 +91,25 @@ def animate(
     """
     from ramtek_emu.films import write_film
 
-    variants = variants_of(frames)
+    rows = variants_of(variants)
     name = fspath(path)
     kind = kind_of(name)
-    if not variants:
+    if not rows:
         raise UsageError("an animation must have at least one frame, not none; make some with `frames`")
-    check_rate(frames_per_second, kind)
+    check_rate(fps, kind)
+    if frames is not None:
+        scene, picture = scene_and_picture(source)
+        source = scene if picture is None else (scene, picture)
+        rows = frames_of_tracks(scene, [rows], frames, loop=None if loop else False)
     tell = progress or (lambda result: None)
     if kind == STREAM:
-        return _stream(source, variants, name, size, smooth, overwrite, tell)
+        return _stream(source, rows, name, size, smooth, overwrite, tell)
     output = name if kind == ".png" else None
     if output is None:
         refuse_output(name, overwrite=overwrite)
     results = batch_results(
         source,
-        variants,
+        rows,
         output,
         executor=executor,
         size=size,
@@ -108,16 +121,16 @@ def animate(
         if output is not None:
             for _ in _made(results, tell):
                 pass
-            return Film(name, len(variants))
+            return Film(name, len(rows))
         with refusals_of_this_package(name):
             loss = write_film(
                 name,
                 (result.image for result in _made(results, tell) if isinstance(result.image, np.ndarray)),
-                fields_per_second=frames_per_second,
+                fields_per_second=fps,
                 loop=loop,
                 overwrite=overwrite,
             )
-    return Film(name, len(variants), loss.fields, loss.largest)
+    return Film(name, len(rows), loss.fields, loss.largest)
 
 
 def kind_of(path: str) -> str:
@@ -136,16 +149,16 @@ def kind_of(path: str) -> str:
     return suffix
 
 
-def check_rate(frames_per_second: float, kind: str) -> None:
+def check_rate(fps: float, kind: str) -> None:
     """Raise UsageError unless a film with this suffix can have this rate."""
     from ramtek_emu.films import LEAST_RATE, MOST_GIF_RATE, MOST_RATE
 
     most = MOST_GIF_RATE if kind == ".gif" else MOST_RATE
-    is_number = isinstance(frames_per_second, Real) and not isinstance(frames_per_second, bool)
-    if not is_number or not LEAST_RATE <= frames_per_second <= most:
+    is_number = isinstance(fps, Real) and not isinstance(fps, bool)
+    if not is_number or not LEAST_RATE <= fps <= most:
         raise UsageError(
             f"the frames per second must be a number from {LEAST_RATE:g} to {most:g}, not"
-            f" {shown(frames_per_second)}; choose another"
+            f" {shown(fps)}; choose another"
         )
 
 

@@ -23,7 +23,7 @@ from typing import Final, NamedTuple
 from autocolor.arrays import Bytes
 from autocolor.checks import brief, shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.palette_file import read_palette
+from autocolor.files.palette_file import Palette, read_palette
 from autocolor.files.paths import LONGEST_STEM, file_stem
 from autocolor.files.reading import bounded_json, read_bytes, text_lines
 from autocolor.files.text_table import TextTable, value_of_text
@@ -72,15 +72,19 @@ class Variant(Immutable):
             if TIMES.validated(time, (), []) is REFUSED:
                 raise UsageError(f"the time of a variant {TIMES.rule()}, not {shown(time)}; correct it")
             vars(self)["time"] = float(time)
-        # The text of a NumPy array leaves out digits and, of a long array, numbers.
-        plain = {
-            key: value.tolist() if hasattr(value, "tolist") else value for key, value in settings.items()
-        }
+        plain = {key: _plain(value) for key, value in settings.items()}
         vars(self)["settings"] = MappingProxyType(plain)
 
     def __reduce__(self) -> tuple[type[Variant], tuple[str, dict[str, object], float | None]]:
         # A read-only mapping cannot be pickled.
         return Variant, (self.name, dict(self.settings), self.time)
+
+
+def _plain(value: object) -> object:
+    """The value; a palette or a NumPy array as a list, because the text of an array leaves out numbers."""
+    if isinstance(value, Palette):
+        return [in_digits(color) for color in value]
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 Rows = Iterable[Variant | Mapping[str, object]]
@@ -98,8 +102,8 @@ def variants_of(rows: Rows) -> tuple[Variant, ...]:
     """
     if isinstance(rows, (str, bytes, Mapping, Variant)) or not isinstance(rows, Iterable):
         raise UsageError(
-            f"variants must be a list of tables or of Variants, not {shown(rows)}; write them as in"
-            " [{'ambient': 0.1}, {'ambient': 0.2}]"
+            f"variants must be a list of tables or of Variants, not {shown(rows)}; write them after the"
+            " scene, as in [{'ambient': 0.1}, {'ambient': 0.2}]"
         )
     return _named(enumerate(rows, 1))
 
@@ -140,7 +144,9 @@ def _variant(row: object) -> Variant:
     if isinstance(row, Variant):
         return row
     if not isinstance(row, Mapping):
-        raise UsageError(f"a variant must be a table of values by key, not {shown(row)}")
+        raise UsageError(
+            f"a variant must be a table of values by key, not {shown(row)}; write it as in {{'ambient': 0.2}}"
+        )
     settings = {key: value for key, value in row.items() if key not in (NAME, TIME)}
     name = row.get(NAME)
     return Variant(UNNAMED if name is None else name, settings, row.get(TIME))
@@ -245,7 +251,8 @@ def results_bytes(results: Sequence[Result]) -> bytes:
 def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
     """Every combination of values for some keys, as variants; the last key changes fastest.
 
-    Raises UsageError for an axis without values, and for too many variants.
+    The values of a key may be the colors of a Palette, with their names. Raises UsageError for an axis
+    without values, and for too many variants.
 
         >>> [variant.name for variant in grid({"scaling": ["object", "surface"], "ambient": [0.1, 0.2]})]
         ['object-0.1', 'object-0.2', 'surface-0.1', 'surface-0.2']
@@ -258,9 +265,19 @@ def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
     for key, values in axes.items():
         if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
             raise UsageError(
-                f"{brief(key)}: an axis must be a list of values, not {shown(values)}; write it as a list"
+                f"{brief(key)}: an axis must be a list of values or a Palette, not {shown(values)}; write it"
+                " as a list"
             )
-    return products([variants_of({key: value} for value in values) for key, values in axes.items()])
+    return products([variants_of(_rows_of(key, values, {})) for key, values in axes.items()])
+
+
+def _rows_of(key: str, values: Iterable[object], taken: dict[str, int]) -> Iterator[dict[str, object]]:
+    """A row for each value of a key; the rows of a palette have the names of its colors (see `_free`)."""
+    if not isinstance(values, Palette):
+        yield from ({key: value} for value in values)
+        return
+    for color, name in zip(values.colors, values.names, strict=True):
+        yield {key: in_digits(color), NAME: _free(name, taken) if name else None}
 
 
 def products(tables: Sequence[Sequence[Variant]]) -> tuple[Variant, ...]:
@@ -333,12 +350,8 @@ def varied(text: str) -> tuple[Variant, ...]:
         shares = [step / (count - 1) for step in range(int(count))]
         return variants_of({key: float(f"{start * (1 - share) + stop * share:.12g}")} for share in shares)
     for value in _split(values, key):
-        if not value.startswith("@"):
-            rows.append({key: value})
-            continue
-        palette = read_palette(value[1:].strip("\"'"))
-        for color, name in zip(palette.colors, palette.names, strict=True):
-            rows.append({key: in_digits(color), NAME: _free(name, taken) if name else None})
+        palette = read_palette(value[1:].strip("\"'")) if value.startswith("@") else None
+        rows.extend(_rows_of(key, [value] if palette is None else palette, taken))
     return variants_of(rows)
 
 

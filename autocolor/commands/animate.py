@@ -101,7 +101,7 @@ def animate(
             start,
             frames,
             output,
-            frames_per_second=fps,
+            fps=fps,
             loop=not once,
             **source.given_sizes,
             executor=executor,

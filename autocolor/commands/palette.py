@@ -11,7 +11,6 @@ from autocolor.commands.completion import complete_surfaces
 from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, scene_in, scene_options, start_of
-from autocolor.errors import UsageError
 
 EXAMPLES: Final = """\b
 Examples:
@@ -37,7 +36,6 @@ def palette(source: SceneSource, surface: str, output: str | None, force: bool) 
     SCENE may be a picture file, which needs no rendering. Any other scene is rendered in the size of the
     display. With `recolor --palette` the colors become a ramp of the surface.
     """
-    from autocolor.checks import nearest
     from autocolor.files.palette_file import check_palette_path, write_palette
     from autocolor.files.paths import file_stem
     from autocolor.files.writing import refuse_output
@@ -53,11 +51,6 @@ def palette(source: SceneSource, surface: str, output: str | None, force: bool) 
     # A wrong name is refused before the picture is rendered.
     scene.surface(surface)
     picture = start.picture if isinstance(start, tuple) else source.rendered(scene)
-    image = display_image(scene, picture)
-    if surface not in image.ranges:
-        raise UsageError(
-            f"surface {surface!r} has no levels, because no part has it{nearest(surface, image.ranges)}"
-        )
-    write_palette(output, image.entries_of(scene.surface(surface)), overwrite=force)
+    write_palette(output, display_image(scene, picture).entries_of(surface), overwrite=force)
     tell_written(output)
     return code

@@ -20,7 +20,7 @@ from autocolor.scene.columns import Row, Tier, keys_of
 from autocolor.scene.kinds import Boolean, ColorKind, CurveKind, Instance, OneOf, color_names
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, RangesByName, Referring, RowList
 from autocolor.scene.scalar import Scalar, ScaleKind
-from autocolor.scene.scene import Scene, costs_at_least, unset_paints
+from autocolor.scene.scene import Scene, costs_at_least, unseen_recoloring, unset_paints
 from ramtek_emu.command_line import tell
 
 
@@ -61,7 +61,8 @@ def recolored(
 ) -> Scene:
     """The scene with settings and other colors of a surface.
 
-    Ramps and colors that are replaced are listed on stderr. Raises UsageError if a setting needs a rendering.
+    Ramps and colors that are replaced are listed on stderr, and a recoloring that no picture shows. Raises
+    UsageError if a setting needs a rendering.
     """
     edited = with_settings(scene, settings)
     if costs_at_least(scene, edited, Tier.MIX):
@@ -70,8 +71,10 @@ def recolored(
             " bands of a scalar; use it with `autocolor render`"
         )
     with as_usage():
-        painted = edited if surface is None else edited.with_surface(surface, **colors)
+        painted = edited if surface is None else edited.with_paint(surface, **colors)
     tell_unset(edited, painted)
+    if surface is not None and (sentence := unseen_recoloring(edited, painted, surface)):
+        tell(f"autocolor: {sentence}")
     return painted
 
 

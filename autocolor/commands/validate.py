@@ -51,7 +51,7 @@ def validate(source: SceneSource, as_json: bool, shows: bool) -> int:
         verdict = f"it can be rendered, with {kinds}" if faults else "no problem"
         tell(f"{source.path}: {verdict}", *fault_lines(faults), err=False)
     if shows:
-        from autocolor.commands.view import show
+        from autocolor.commands.window import show
         from autocolor.journal.history import History
 
         # The colored scene has no file to save to.

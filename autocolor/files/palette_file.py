@@ -18,7 +18,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, SupportsIndex, overload
 
 import numpy as np
 
@@ -52,9 +52,12 @@ COMPONENTS: Final = ("red", "green", "blue")
 COLOR: Final = ColorKind()
 
 
-@dataclass(frozen=True, repr=False, init=False)
-class Palette:
+@dataclass(frozen=True, init=False)
+class Palette(Sequence[Color]):
     """Colors in order, red, green and blue from 0 to 255, and their names; "" for a color without a name.
+
+    A palette is a sequence of its colors, so that it can be the ramp of a surface, the colors of a scale, or
+    the values of a key in `grid`, which then names its variants after the colors.
 
     Any colors are accepted that a surface accepts, in any sequence or array. Names may repeat; without
     `names`, no color has a name. Raises InputError unless there are 1 to 4,096 valid colors, and a valid name
@@ -65,6 +68,8 @@ class Palette:
     names: tuple[str, ...]
 
     def __init__(self, colors: Any, names: Iterable[str] = ()) -> None:
+        if not isinstance(colors, Iterable):
+            raise InputError(f"the colors of a palette must be a sequence, not {shown(colors)}; give a list")
         colors = colors.tolist() if isinstance(colors, np.ndarray) else list(colors)
         names = tuple(names) or ("",) * len(colors)
         if not 1 <= len(colors) <= MOST_COLORS:
@@ -82,6 +87,13 @@ class Palette:
 
     def __len__(self) -> int:
         return len(self.colors)
+
+    @overload
+    def __getitem__(self, key: SupportsIndex) -> Color: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[Color, ...]: ...
+    def __getitem__(self, key: SupportsIndex | slice) -> Color | tuple[Color, ...]:
+        return self.colors[key]
 
     def color_named(self, name: str) -> Color | None:
         """The first color with this name, in capitals or not; None if no color has this name."""
@@ -178,7 +190,7 @@ def _components(texts: Iterable[str]) -> list[int | str]:
 
 def write_palette(
     path: str | os.PathLike[str],
-    palette: Palette | Bytes | Sequence[str | Sequence[int]],
+    palette: Bytes | Sequence[str | Sequence[int]],
     *,
     names: Iterable[str] | None = None,
     overwrite: bool = False,
@@ -193,10 +205,8 @@ def write_palette(
     """
     path = Path(path)
     check_palette_path(path)
-    if not isinstance(palette, Palette):
+    if not isinstance(palette, Palette) or names is not None:
         palette = Palette(palette, names or ())
-    elif names is not None:
-        palette = Palette(palette.colors, names)
     text = io.StringIO()
     rows = zip(palette.colors, palette.names, strict=True)
     if path.suffix.lower() == GPL:

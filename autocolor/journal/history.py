@@ -15,7 +15,8 @@ from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.journal.places import NO_STAMP, FilesOnDisk, OnDisk, Opened, ScenePlace, Source
-from autocolor.scene.scene import Scene
+from autocolor.mapping.intensity import is_held
+from autocolor.scene.scene import AUTO, Exposure, Scene
 
 MOST_VARIANTS: Final = 1000
 LONGEST_NAME: Final = 100
@@ -152,6 +153,28 @@ class History:
     def earlier(self) -> tuple[Scene, ...]:
         """The scenes of `to_undo` that belong to the place of the current scene."""
         return tuple(each.scene for each in self._undo_stack if each.place is self.place)
+
+    @property
+    def following_exposure(self) -> str:
+        """The exposure by which all ranges last followed the picture: "auto" or a percentage."""
+        exposures = (scene.exposure for scene in reversed(self.earlier))
+        return next((exposure for exposure in exposures if isinstance(exposure, str)), AUTO)
+
+    @property
+    def released_exposure(self) -> Exposure:
+        """The exposure before all ranges were held; if there is none, ranges follow the picture.
+
+        If only ranges of some surfaces are held, all ranges follow the picture again.
+        """
+        exposure, names = self.scene.exposure, {surface.name for surface in self.scene.surfaces}
+        if not is_held(exposure):
+            return exposure if isinstance(exposure, str) else self.following_exposure
+        befores = [
+            before
+            for before in (AUTO, *(scene.exposure for scene in self.earlier))
+            if not is_held(before) and (isinstance(before, str) or dict(before).keys() <= names)
+        ]
+        return befores[-1]
 
     @property
     def to_redo(self) -> tuple[Scene, ...]:

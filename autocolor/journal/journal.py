@@ -63,7 +63,7 @@ class JournalSession(NamedTuple):
 
 
 def read_journal(path: str | os.PathLike[str], *, limit: float | None = None) -> JournalSession:
-    """The session of a journal: `Studio(read_journal(path).history, display)` goes on with it.
+    """The session of a journal: `Studio(read_journal(path).history)` goes on with it.
 
     Meshes are read from their files. Raises InputError if a line is no step of this version, if a step is
     refused, or if a mesh was changed since; MissingInputError if a file is missing. `limit` is a factor for

@@ -2,7 +2,7 @@
 
     scene = autocolor.read_scene('/home/ann/coupe', up='z', surfaces='materials')
     scene = scene.replace(parts=[...], surfaces=[...], lights=[...], view={...}, ambient=0.1, ...)
-    studio = autocolor.Studio(scene, Ramtek9300())
+    studio = autocolor.Studio(scene)
     studio.recolor('body', blend=0.5)
     studio.edit(studio.scene.with_light('key', on=False), same_step=True)
     studio.open('/home/ann/car.obj', up='y', surfaces='parts', tables={...}, checksum='03ab...')
@@ -47,11 +47,10 @@ def script_of(history: History, source: Source, meshes: MeshesBeside) -> str:
     lines = [
         '"""A session of autocolor: run it with Python."""',
         "import autocolor",
-        "from ramtek_emu import Ramtek9300",
         "",
         f"scene = autocolor.read_scene({_arguments(os.path.abspath(source.path), **_options(source))})",
         f"scene = scene.replace({_arguments(**to_plain(history.start))})",
-        "studio = autocolor.Studio(scene, Ramtek9300())",
+        "studio = autocolor.Studio(scene)",
         *(step_statement(step, history.start, meshes) for step in history.steps),
     ]
     return "\n".join([*lines, ""])

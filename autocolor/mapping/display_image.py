@@ -16,6 +16,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
+from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
@@ -25,7 +26,6 @@ from autocolor.mapping.intensity import ranges_of, words_of
 from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, costs_at_least
-from autocolor.scene.surfaces import Surface
 from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_points import SurfaceSlice
 from autocolor.visibility.watkins import numbers_by_line
@@ -61,12 +61,21 @@ class DisplayImage(ABC):
         """The picture whose intensities are mapped to the ranges."""
 
     @abstractmethod
-    def entries_of(self, surface: Surface) -> Bytes:
-        """The entries of the words of one surface, (levels, 3) uint8, read-only."""
+    def entries_of(self, name: str) -> Bytes:
+        """The entries of the words of one surface, (levels, 3) uint8, read-only. Raises as `range_of`."""
 
     @abstractmethod
     def words_at_levels(self, name: str) -> Words:
         """The word that shows each level of a surface in use, from the lowest level up, (levels,) uint16."""
+
+    def range_of(self, name: str) -> LevelRange:
+        """The range of a surface. Raises UsageError for an unknown surface, and for a surface of no part."""
+        if name not in self.ranges:
+            surface = self.scene.surface(name)
+            raise UsageError(
+                f"surface {surface.name!r} has no levels, because no part has it{nearest(name, self.ranges)}"
+            )
+        return self.ranges[name]
 
     @property
     def colors(self) -> Bytes:
@@ -83,7 +92,7 @@ class DisplayImage(ABC):
         table[BACKGROUND] = self.scene.background
         table[SCREENS.first :] = SCREEN_COLORS
         for name, (first, levels) in self.ranges.items():
-            table[first : first + levels] = self.entries_of(self.scene.surface(name))
+            table[first : first + levels] = self.entries_of(name)
         return read_only(table)
 
     def loads_after(self, before: DisplayImage) -> Iterator[tuple[int, Bytes]]:
@@ -154,14 +163,15 @@ class LevelImage(DisplayImage):
         """The picture of the scene itself."""
         return self.picture
 
-    def entries_of(self, surface: Surface) -> Bytes:
-        """The entries of one surface's levels or bands, (levels, 3) uint8, read-only."""
-        scalar, bands = self.scene.scalar, self.bands.get(surface.name)
+    def entries_of(self, name: str) -> Bytes:
+        """The entries of a surface's levels or bands, (levels, 3) uint8, read-only. Raises as `range_of`."""
+        levels = self.range_of(name).levels
+        scalar, bands = self.scene.scalar, self.bands.get(name)
         if scalar is not None and bands is not None:
             ends = scalar.below if bands.has_below else None, scalar.above if bands.has_above else None
-            floor = self.floor_of(surface.name) if self.scene.contrast == "floor" else DARKEST
+            floor = self.floor_of(name) if self.scene.contrast == "floor" else DARKEST
             return band_entries(scalar.scale, ends, scalar.missing, bands, floor)
-        return entries_of(surface.paint, self.ranges[surface.name].levels, self.floor_of(surface.name))
+        return entries_of(self.scene.surface(name).paint, levels, self.floor_of(name))
 
     def words_at_levels(self, name: str) -> Words:
         """The words of the surface's range, (levels,) uint16."""
@@ -193,7 +203,7 @@ class LevelImage(DisplayImage):
             else:
                 is_same = name in befores and surface.paint == befores[name].paint
             if name in self.ranges and not is_same:
-                yield self.ranges[name].first, self.entries_of(surface)
+                yield self.ranges[name].first, self.entries_of(name)
 
     @property
     def _scale(self) -> tuple[object, ...]:

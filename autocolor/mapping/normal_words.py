@@ -48,7 +48,6 @@ from autocolor.mapping.ranges import BACKGROUND, WORDS, LevelRange
 from autocolor.scene.columns import with_values
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Surface
 from autocolor.visibility.visible_points import (
     NORMAL,
     REFLECTED_VIEW,
@@ -106,17 +105,17 @@ class NormalImage(DisplayImage):
         """The light at the visible normals, which are more than the words."""
         return self.lit.at_samples
 
-    def entries_of(self, surface: Surface) -> Bytes:
-        """The entries of one surface's words, (levels, 3) uint8, read-only.
+    def entries_of(self, name: str) -> Bytes:
+        """The entries of one surface's words, (levels, 3) uint8, read-only. Raises as `range_of`.
 
         Words that stand for no normal have the color of their level.
         """
-        name, floor = surface.name, self.floor_of(surface.name)
-        levels = self.ranges[name].levels
-        entries = entries_of(surface.paint, levels, floor)
+        levels, floor = self.range_of(name).levels, self.floor_of(name)
+        paint = self.scene.surface(name).paint
+        entries = entries_of(paint, levels, floor)
         if name not in self._fractions:
             return entries
-        at_normals = entries_at(surface.paint, self._fractions[name], levels, floor)
+        at_normals = entries_at(paint, self._fractions[name], levels, floor)
         return read_only(np.concatenate([at_normals, entries[len(at_normals) :]]))
 
     def words_at_levels(self, name: str) -> Words:

@@ -166,7 +166,7 @@ class Kind(Generic[Value]):
         if isinstance(one, Row):
             return one.between(other, share)
         if isinstance(one, tuple) and _names_in(one) == _names_in(other):
-            return tuple(self.between(a, b, share) for a, b in zip(one, other, strict=True))
+            return type(one)(self.between(a, b, share) for a, b in zip(one, other, strict=True))
         if type(one) is type(other) is int:
             return half_up(one + (other - one) * share)
         if not (isinstance(one, float) and isinstance(other, float)) or one == other:
@@ -197,6 +197,11 @@ class Row(Immutable):
 
     def __post_init__(self) -> None:
         check(self, fields_of(type(self)), [])
+
+    def meant(self) -> Iterable[str]:
+        """The names that may be meant: attributes, and fields of rows inside, such as "paint.blend"."""
+        inside = ((key, row.field) for key, row in keys_of(type(self)).items() if row.field != key)
+        return [*super().meant(), *(f"{field}.{key}" for key, field in inside)]
 
     def rules(self) -> Iterator[Problem]:
         """The problems of rules between columns. A column with an invalid value is REFUSED."""
@@ -320,7 +325,7 @@ def _made(cls: type[SomeRow], present: dict[str, Any], changes: Mapping[str, Any
         if key is not None and key.field != name:
             inside.setdefault(key.field, {})[name] = value
         elif name not in fields:
-            problems.append(unknown_key(name, {**fields, **keys}))
+            problems.append(unknown_key(name, {**fields, **keys}, cls.elsewhere))
         elif isinstance(value, Mapping):
             inside.setdefault(name, {}).update(value)
         else:
@@ -441,10 +446,11 @@ class Problem(NamedTuple):
         return self._replace(path=(*path, *self.path))
 
 
-def unknown_key(name: object, keys: Iterable[str]) -> Problem:
-    """The problem of an unknown key, with the closest of `keys`."""
+def unknown_key(name: object, keys: Iterable[str], elsewhere: Mapping[str, str] = Row.elsewhere) -> Problem:
+    """The problem of an unknown key, with the closest of `keys`, or the advice of `Row.elsewhere`."""
     text = name if isinstance(name, str) else shown(name)
-    return Problem((text,), f"there is no field {shown(name)}{nearest(text, keys)}", names_key=True)
+    advice = elsewhere.get(text) or nearest(text, keys)
+    return Problem((text,), f"there is no field {shown(name)}{advice}", names_key=True)
 
 
 class RowError(InputError):

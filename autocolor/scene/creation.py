@@ -64,8 +64,9 @@ def scene_of(
 
     A part gets the first of these surfaces that exists: the surface that `parts` or `surface_of_part` names;
     the given surface with the part's name; with `surfaces="parts"`, a new surface like its material; the
-    surface of its material, from `materials` or created; a created surface that all other parts share. Beyond
-    MOST_SURFACES, the remaining parts share the last surface.
+    surface of its material, from `materials` or created; the only given surface, if no part has it yet; a
+    created surface that all other parts share. Beyond MOST_SURFACES, the remaining parts share the last
+    surface.
 
     `parts` has fields of parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other fields
     of Scene. Raises InputError, or UsageError for any word but "materials" and "parts".
@@ -92,6 +93,9 @@ def scene_of(
     shared = SHARED
     while shared in used:
         shared += " for all others"
+    own = {surface.name for surface in given}
+    if len(own) == 1 and own.isdisjoint(names.union(row.surface for row in rows)):
+        (shared,) = own
     of_material = {surface.name: surface for surface in materials if surface.name != shared}
     if surfaces == PARTS:
         # A part's own surface is like that of its material.
@@ -100,7 +104,6 @@ def scene_of(
         of_own = {name: surface.replace(name=name) for name, surface in of_part.items() if surface}
         of_material = {**others, **of_own}
         material_of_part = {name: name for name in mesh.part_names}
-    own = {surface.name for surface in given}
     rows = tuple(
         row.replace(surface=row.name if row.name in own else material_of_part.get(row.name, shared))
         if row.surface == UNASSIGNED

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import ClassVar, Final, Unpack
 
 import numpy as np
@@ -281,6 +281,9 @@ class Light(Row):
     """
 
     noun: ClassVar[str] = "light"
+    elsewhere: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("color", "colour", "light_color"), "; a light has no color here: set the surface's light_color"
+    )
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (("direction",), ("aim",))
 
     name: str = text(tier=Tier.LIGHT, help="The name of the light, which must be unique.")

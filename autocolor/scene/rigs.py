@@ -21,7 +21,7 @@ from autocolor.scene.columns import REFUSED, WORLD_UNITS, Problem, Row, Tier, co
 from autocolor.scene.following import light_frame, moved_vectors
 from autocolor.scene.kinds import Number, coordinates
 from autocolor.scene.lights import AXES, Flap, HalfSpace, Light, middle_between
-from autocolor.scene.row_kinds import RowList, table_row
+from autocolor.scene.row_kinds import RowList, TableRows, table_row
 
 
 @table_row
@@ -32,7 +32,9 @@ class Rig(Row):
 
     minimum: Vector = coordinates(tier=Tier.LIGHT, help="The smallest coordinates of the object.")
     maximum: Vector = coordinates(tier=Tier.LIGHT, help="The largest coordinates of the object.")
-    lights: tuple[Light, ...] = column_of(RowList(Light), default=(), tier=Tier.MIX, help="The lights.")
+    lights: TableRows[Light] = column_of(
+        RowList(Light), default=TableRows(), tier=Tier.MIX, help="The lights."
+    )
 
     def rules(self) -> Iterator[Problem]:
         """No coordinate of the minimum is above that of the maximum."""

@@ -12,10 +12,23 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Final, Unpack, dataclass_transform, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Final,
+    NoReturn,
+    Self,
+    SupportsIndex,
+    TypeVar,
+    Unpack,
+    dataclass_transform,
+    get_type_hints,
+    overload,
+)
 
 from autocolor.arrays import LARGEST_SINGLE
 from autocolor.checks import closest, either, listed, nearest, shown
+from autocolor.errors import UsageError
 from autocolor.scene.columns import (
     REFUSED,
     About,
@@ -145,8 +158,47 @@ class OneRowOf(Kind[SomeRow]):
         return difference(one, other) if type(one) is type(other) else self.to_plain(name, other)
 
 
+RowOfTable = TypeVar("RowOfTable", bound=Row, covariant=True)
+
+
+class TableRows(tuple[RowOfTable, ...]):
+    """The rows of a table: a tuple whose rows have names, so that `scene.lights["key"]` is a row, too.
+
+    A slice is a plain tuple. Raises UsageError, with the closest name, for a name that no row has.
+    """
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        # A row class with a field of this type accepts any rows for it.
+        def __get__(self, row: object, cls: type) -> Self: ...
+        def __set__(self, row: object, rows: Sequence[Row]) -> None: ...
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str) -> RowOfTable: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[RowOfTable, ...]: ...
+    def __getitem__(self, key: SupportsIndex | slice | str) -> RowOfTable | tuple[RowOfTable, ...]:
+        return super().__getitem__(place_named(self, key) if isinstance(key, str) else key)
+
+    def __contains__(self, key: object) -> bool:
+        return (
+            any(vars(row)["name"] == key for row in self)
+            if isinstance(key, str)
+            else super().__contains__(key)
+        )
+
+
+def place_named(rows: Sequence[Row], name: str) -> int:
+    """The index of the row of that name. Raises UsageError, with the closest name, if no row has it."""
+    names = [vars(row)["name"] for row in rows]
+    if name in names:
+        return names.index(name)
+    raise UsageError(f"there is no {rows[0].noun if rows else 'row'} {shown(name)}{nearest(name, names)}")
+
+
 @dataclass(frozen=True)
-class RowList(Kind[tuple[SomeRow, ...]]):
+class RowList(Kind[TableRows[SomeRow]]):
     """A table: rows of a class with unique names; scene files write them `by_name` or as an array."""
 
     row_class: type[SomeRow]
@@ -159,7 +211,7 @@ class RowList(Kind[tuple[SomeRow, ...]]):
         if not isinstance(value, (list, tuple)) or len(value) > MOST_ROWS:
             return refused(problems, path, f"{self.rule()}, not {shown(value)}")
         nested = Nested(self.row_class)
-        rows = tuple(
+        rows = TableRows(
             row if type(row) is self.row_class else nested.validated(row, (*path, place), problems)
             for place, row in enumerate(value)
         )
@@ -371,6 +423,13 @@ def without_name(keys: Mapping[str, object]) -> dict[str, object]:
     return {key: value for key, value in keys.items() if key != "name"}
 
 
+def _refuse_assignment(row: Row, name: str, value: object) -> NoReturn:
+    thing = type(row).__name__
+    raise dataclasses.FrozenInstanceError(
+        f"a {thing} cannot be changed; use replace({name}=...), which returns another {thing}"
+    )
+
+
 @dataclass_transform(
     frozen_default=True,
     field_specifiers=(column_of, number, boolean, text, coordinates, vector, one_of, color, nested),
@@ -381,5 +440,7 @@ def table_row(cls: type[SomeRow]) -> type[SomeRow]:
     The fields are made by `column_of`, or by a function for one kind, such as `number`.
     """
     made = dataclasses.dataclass(frozen=True, repr=False)(cls)
+    if hasattr(made, "replace"):
+        made.__setattr__ = _refuse_assignment  # type: ignore[method-assign,assignment]
     made.__init__.__annotations__ = {**get_type_hints(made.__init__), "return": None}
     return made

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
-from typing import Any, Final, TypeVar, Unpack
+from typing import Any, Final, NoReturn, TypeVar, Unpack
 
 from autocolor.arrays import Floats
 from autocolor.checks import Color, Vector, nearest, shown
@@ -56,7 +56,15 @@ from autocolor.scene.kinds import CurveKind, Instance, color, number, one_of, te
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
-from autocolor.scene.row_kinds import RangesByName, RowList, nested, references_of, table_row
+from autocolor.scene.row_kinds import (
+    RangesByName,
+    RowList,
+    TableRows,
+    nested,
+    place_named,
+    references_of,
+    table_row,
+)
 from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
@@ -99,13 +107,13 @@ class Scene(Row):
     """
 
     mesh: Mesh = column_of(Instance(Mesh), tier=Tier.FRAME, help="The node table and the polygon table.")
-    parts: tuple[Part, ...] = column_of(
+    parts: TableRows[Part] = column_of(
         RowList(Part, by_name=True), tier=Tier.FRAME, help="The parts, which are groups of polygons."
     )
-    surfaces: tuple[Surface, ...] = column_of(
+    surfaces: TableRows[Surface] = column_of(
         RowList(Surface, by_name=True), tier=Tier.FRAME, help="The surface types."
     )
-    lights: tuple[Light, ...] = column_of(RowList(Light), tier=Tier.MIX, help="The lights.")
+    lights: TableRows[Light] = column_of(RowList(Light), tier=Tier.MIX, help="The lights.")
     view: View = nested(View, tier=Tier.FRAME, help="The eye position and the view direction.")
     ambient: float = number(
         default=0.1,
@@ -171,8 +179,11 @@ class Scene(Row):
         tier=Tier.NOTHING,
         help="The axis toward which the object faces; it names the views from the sides.",
     )
-    views: tuple[NamedView, ...] = column_of(
-        RowList(NamedView), default=(), tier=Tier.NOTHING, help="The named views, which can become the view."
+    views: TableRows[NamedView] = column_of(
+        RowList(NamedView),
+        default=TableRows(),
+        tier=Tier.NOTHING,
+        help="The named views, which can become the view.",
     )
     scalar: Scalar | None = nested(
         Scalar, default=None, tier=Tier.MIX, help="The scalar that colors the surfaces, if any."
@@ -246,16 +257,16 @@ class Scene(Row):
 
     def light(self, name: str) -> Light:
         """The light of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.lights[_place("light", self.lights, name)]
+        return self.lights[name]
 
     @property
-    def lights_in_world(self) -> tuple[Light, ...]:
+    def lights_in_world(self) -> TableRows[Light]:
         """The lights in object coordinates, whatever they follow."""
-        return lights_in_world(self.lights, self.view)
+        return TableRows(lights_in_world(self.lights, self.view))
 
     def light_in_world(self, name: str) -> Light:
         """The light of that name in object coordinates. Raises UsageError if it does not exist."""
-        return self.lights_in_world[_place("light", self.lights, name)]
+        return self.lights_in_world[name]
 
     def with_light_in_world(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of a light changed; positions and directions are in object coordinates.
@@ -287,23 +298,28 @@ class Scene(Row):
 
     def surface(self, name: str) -> Surface:
         """The surface of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.surfaces[_place("surface", self.surfaces, name)]
+        return self.surfaces[name]
 
     def part(self, name: str) -> Part:
         """The part of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.parts[_place("part", self.parts, name)]
+        return self.parts[name]
 
     def with_light(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of a light changed."""
-        return self._with_row("lights", _place("light", self.lights, name), changes)
+        return self._with_row("lights", place_named(self.lights, name), changes)
 
     def with_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> Scene:
         """The scene with some fields of a surface changed, also fields of its reflectance and its paint."""
-        return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
+        return self._with_row("surfaces", place_named(self.surfaces, name), changes)
 
-    def with_paint(self, name: str, /, **changes: Unpack[PaintChanges]) -> Scene:
+    def with_paint(self, name: str, /, *colors: NoReturn, **changes: Unpack[PaintChanges]) -> Scene:
         """The scene with some fields of a surface's paint changed; the same scene if all values are equal."""
-        place = _place("surface", self.surfaces, name)
+        if colors:
+            raise UsageError(
+                f"a recoloring must name its fields, not give {shown(colors[0])} alone; write it as in"
+                f" recolor({name!r}, object_color={shown(colors[0])})"
+            )
+        place = place_named(self.surfaces, name)
         surface = self.surfaces[place]
         try:
             paint = replaced(surface.paint, changes)
@@ -312,11 +328,12 @@ class Scene(Row):
         if paint == surface.paint:
             return self
         row = with_values(surface, {"paint": paint})
-        return with_values(self, {"surfaces": (*self.surfaces[:place], row, *self.surfaces[place + 1 :])})
+        rows = TableRows((*self.surfaces[:place], row, *self.surfaces[place + 1 :]))
+        return with_values(self, {"surfaces": rows})
 
     def with_part(self, name: str, /, **changes: Unpack[PartChanges]) -> Scene:
         """The scene with some fields of a part changed."""
-        return self._with_row("parts", _place("part", self.parts, name), changes)
+        return self._with_row("parts", place_named(self.parts, name), changes)
 
     def with_view(self, /, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
@@ -324,11 +341,11 @@ class Scene(Row):
 
     def named_view(self, name: str) -> NamedView:
         """The named view of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.views[_place("named view", self.views, name)]
+        return self.views[name]
 
     def with_named_view(self, name: str, /, **changes: Unpack[NamedViewChanges]) -> Scene:
         """The scene with some fields of a named view changed; the view itself stays."""
-        return self._with_row("views", _place("named view", self.views, name), changes)
+        return self._with_row("views", place_named(self.views, name), changes)
 
     def with_saved_view(self, name: str | None = None) -> Scene:
         """The scene with its view under a name: of a new named view at the end, or in place of an old one.
@@ -346,8 +363,8 @@ class Scene(Row):
 
     def without_named_view(self, name: str) -> Scene:
         """The scene without a named view. Raises UsageError if the named view does not exist."""
-        place = _place("named view", self.views, name)
-        return with_values(self, {"views": (*self.views[:place], *self.views[place + 1 :])})
+        place = place_named(self.views, name)
+        return with_values(self, {"views": TableRows((*self.views[:place], *self.views[place + 1 :]))})
 
     def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
         """The scene with some fields of its scalar changed. A new scalar must have a name."""
@@ -370,7 +387,7 @@ class Scene(Row):
 
         Raises UsageError if the light does not exist, InputError if another light follows it.
         """
-        place = _place("light", self.lights, name)
+        place = place_named(self.lights, name)
         if followers := followers_of(name, self.lights):
             first = repr(followers[0])
             raise InputError(
@@ -416,9 +433,11 @@ class Scene(Row):
     def with_rig(self, rig: Rig) -> Scene:
         """The scene with the lights of a rig instead of its own, fitted to the size of its object.
 
-        Links to unknown surfaces and parts are left out (see `Links.within`). Raises InputError if the lights
-        cannot be fitted (see `Rig.fitted`).
+        Links to unknown surfaces and parts are left out (see `Links.within`). Raises UsageError for any other
+        value, InputError if the lights cannot be fitted (see `Rig.fitted`).
         """
+        if not isinstance(rig, Rig):
+            raise UsageError(f"a rig must be a Rig, not {shown(rig)}; read one from a file with `read_rig`")
         surfaces, parts = ({row.name for row in rows} for rows in (self.surfaces, self.parts))
         lights = [
             light.replace(links=light.links.within(surfaces, parts))
@@ -442,7 +461,7 @@ class Scene(Row):
     def _with_row(self, table: str, place: int, changes: Mapping[str, Any]) -> Scene:
         rows = vars(self)[table]
         row = rows[place]
-        rows = (*rows[:place], replaced(row, changes), *rows[place + 1 :])
+        rows = TableRows((*rows[:place], replaced(row, changes), *rows[place + 1 :]))
         # Tables refer to each other by name, so references stay valid unless a name or a reference changes.
         # A light must keep the aim that another light follows. Cached properties depend on the parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
@@ -516,6 +535,15 @@ def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
     return edit_cost is not None and edit_cost >= tier
 
 
+def unseen_recoloring(old: Scene, new: Scene, surface: str) -> str:
+    """Why no picture shows the recoloring of a surface by `with_paint`; empty if one can show it."""
+    if new is old:
+        return f"surface {shown(surface)} has these colors already; the recoloring changes nothing"
+    if all(new.parts[part].surface != surface for part in new.mesh.parts_in_use):
+        return f"surface {shown(surface)} has no polygons; no picture shows its colors"
+    return ""
+
+
 def unset_paints(old: Scene, new: Scene) -> list[str]:
     """A sentence for each surface whose two colors an edit replaces by a ramp, or whose ramp by two colors.
 
@@ -530,11 +558,3 @@ def unset_paints(old: Scene, new: Scene) -> list[str]:
         elif before.ramp is not None and now.ramp is None:
             sentences.append(f"{surface.name}: two colors and their blend replace its ramp")
     return sentences
-
-
-def _place(kind: str, rows: Sequence[SomeTableRow], name: str) -> int:
-    """The index of the row of that name. Raises UsageError, with the closest name, if it does not exist."""
-    for place, row in enumerate(rows):
-        if row.name == name:
-            return place
-    raise UsageError(f"there is no {kind} {shown(name)}{nearest(str(name), [row.name for row in rows])}")

@@ -439,7 +439,7 @@ def flipped(session: Session, name: str) -> Exposure:
         others = [other for other in studio.level_ranges if other != OBJECT]
         held = {**(dict.fromkeys(others, of_object) if of_object else {}), **held}
         held.pop(name)
-        return tuple(held.items()) or studio.following_exposure
+        return tuple(held.items()) or studio.history.following_exposure
     picture = studio.display_image.mapped
     number = picture.surfaces.index(name) + 1
     extent = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene)).get(number)

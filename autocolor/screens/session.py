@@ -155,6 +155,8 @@ class Session:
         """Each key and what it does, for the help page."""
         self.is_at_hand = False
         """Whether the user sits at this machine; a pointer from elsewhere stays within `root`."""
+        self.outlives_window = False
+        """Whether the steps remain in a studio when the user leaves, who then loses nothing."""
         self.mesh_up, self.mesh_scale = "z", 1.0
         """The up axis and the scale of mesh files that are opened; other files give their own."""
         self.paints: Palette | None = None
@@ -589,6 +591,8 @@ class Session:
     def unsaved(self) -> str:
         """The changes that leaving the program would lose, and how to save them; empty without changes."""
         history = self.studio.history
+        if self.outlives_window:
+            return ""
         if history.is_changed:
             return "not saved: Ctrl+S saves" if self.has_keyboard else "not saved: save it"
         if history.left_unsaved:

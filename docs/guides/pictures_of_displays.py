@@ -182,7 +182,7 @@ def paper_blends() -> Field:
     for blend in (1.0, 0.5, 0.0):
         car = autocolor.demo().with_paint("body", object_color="#8c1a22", light_color="#f0e8d8", blend=blend)
         studio = autocolor.Studio(car, Ramtek9300())
-        entries = studio.display_image.entries_of(car.surface("body"))
+        entries = studio.display_image.entries_of("body")
         bar = entries[np.linspace(0, len(entries) - 1, 200).round().astype(int)]
         parts.append(np.vstack([np.tile(bar, (24, 1, 1)), panel(car, f"blend {blend:g}")]))
     return beside(*parts)

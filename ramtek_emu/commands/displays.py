@@ -6,7 +6,7 @@ import os
 import select
 import signal
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
@@ -17,7 +17,7 @@ from ramtek_emu import command_line
 from ramtek_emu.command_line import ENDING, SIGNALS
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration
 from ramtek_emu.errors import MissingInputError, RamtekError, WordsError, reason_of
-from ramtek_emu.writing import Output, refuse_output, same_outputs
+from ramtek_emu.writing import PNG, Output, check_suffix, refuse_output, same_outputs
 
 if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
@@ -73,14 +73,19 @@ def display_asked_for(configuration: str | None, start: str | None = None) -> Ra
     return Ramtek9300(GMR_9300 if configuration is None else configuration)
 
 
-def refuse_outputs(force: bool, *paths: str | None) -> None:
-    """Refuse outputs that cannot be written; call it before the work. None means no output."""
-    for path in paths:
-        if path is not None:
-            if path in ("", "-"):
-                raise click.UsageError(f"an output must be the name of a file, not {path!r}; give it one")
-            refuse_output(path, force)
-    if same := same_outputs(path for path in paths if path is not None):
+def refuse_outputs(force: bool, *paths: str | None, pictures: Sequence[str | None] = ()) -> None:
+    """Refuse outputs that cannot be written; call it before the work. None means no output.
+
+    `pictures` are further outputs, which are PNG files.
+    """
+    outputs = [path for path in (*paths, *pictures) if path is not None]
+    for path in outputs:
+        if path in ("", "-"):
+            raise click.UsageError(f"an output must be the name of a file, not {path!r}; give it one")
+        if path in pictures:
+            check_suffix(path, PNG, "a picture")
+        refuse_output(path, force)
+    if same := same_outputs(outputs):
         raise click.UsageError(
             f"two outputs must be two files, not {same[0]} and {same[1]}, which are the same; rename one"
         )

@@ -78,7 +78,7 @@ def inspect(
     """
     if who is not None and who_entry is not None:
         raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
-    refuse_outputs(force, output)
+    refuse_outputs(force, pictures=[output])
     display = display_asked_for(configuration, start)
 
     from ramtek_emu.inspection.replay import Replay

@@ -99,7 +99,7 @@ def play(
     if loads_per_second is not None and not in_window:
         raise click.UsageError("--loads-per-second is for the window; add --window, or leave it out")
     refuse_film(context, film, force)
-    refuse_outputs(force, output, snapshot, record, film)
+    refuse_outputs(force, record, film, pictures=[output, snapshot])
     file = open_stream(stream)
     display = display_asked_for(configuration, start)
 

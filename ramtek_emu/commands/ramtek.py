@@ -83,7 +83,7 @@ def ramtek(
     from ramtek_emu.commands.displays import display_asked_for, refuse_outputs
     from ramtek_emu.monitor.pattern import pattern
 
-    refuse_outputs(force, output)
+    refuse_outputs(force, pictures=[output])
     display = display_asked_for(configuration)
     display.send(pattern(display.configuration))
     if output is not None:

@@ -108,7 +108,7 @@ def serve(
         raise click.UsageError(
             "stdin must be for words or for the joystick, not both; give --joystick a FIFO"
         )
-    refuse_outputs(force, output, snapshot, record)
+    refuse_outputs(force, record, pictures=[output, snapshot])
     display = display_asked_for(configuration, start)
 
     from ramtek_emu.host.joystick import JoystickLines

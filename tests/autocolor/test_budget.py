@@ -143,7 +143,7 @@ def test_a_picture_is_rendered_within_the_budget_that_it_asks_for(asked: list[fl
     assert needed == 96 * 30 * 40
     for more in (0, 1):
         assert np.array_equal(render(scene, (40, 30), limit=factor(needed + more)).relative, whole.relative)
-    with pytest.raises(InputError, match=r"a picture of 40 x 30 pixels must take .*; render fewer lines"):
+    with pytest.raises(InputError, match=r"a picture of 40 x 30 pixels must take .*; render it smaller"):
         render(scene, (40, 30), limit=factor(needed - 1))
     with pytest.raises(InputError, match=r"a picture of 16384 x 16384 pixels .* --limit 6.5 "):
         render(scene, (16384, 16384))

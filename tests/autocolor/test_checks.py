@@ -4,7 +4,10 @@ import difflib
 
 import pytest
 
-from autocolor.checks import MOST_COMPARED, closest, nearest, printable, shown
+import autocolor
+from autocolor import Light, Surface
+from autocolor.checks import FUNCTIONS, MOST_COMPARED, closest, nearest, printable, shown
+from tests.small import cube
 
 
 @pytest.mark.parametrize(
@@ -29,12 +32,62 @@ from autocolor.checks import MOST_COMPARED, closest, nearest, printable, shown
         ("fov", ["eye", "field_of_view"], "; did you mean 'field_of_view'?"),
         ("colour", ["blend", "object_color"], "; did you mean 'object_color'?"),
         ("N", ["Nose"], "; did you mean 'Nose'?"),
+        ("brightness", ["intensity", "on"], "; did you mean 'intensity'?"),
+        ("blend", ["name", "paint.blend"], "; did you mean 'paint.blend'?"),
         ("BODY", ["bodywork", "body"], "; did you mean 'body'?"),
         ("conc", ["cone_angle", "concentration"], "; did you mean 'concentration'?"),
     ],
 )
 def test_the_nearest_right_name_is_told(name: str, known: list[object], clause: str) -> None:
     assert nearest(name, known) == clause
+
+
+ELSEWHERE = "a light has no color here: set the surface's light_color"
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "answer"),
+    [
+        (
+            autocolor,
+            "load",
+            "module 'autocolor' has no attribute 'load'; did you mean 'autocolor.read_scene'?",
+        ),
+        (
+            autocolor,
+            "read_scen",
+            "module 'autocolor' has no attribute 'read_scen'; did you mean 'read_scene'?",
+        ),
+        (
+            Light("key", (0, 0, 0)),
+            "save",
+            "'Light' object has no attribute 'save'; did you mean 'autocolor.save_image',"
+            " 'autocolor.write_scene' or 'autocolor.write_picture'?",
+        ),
+        (Light("key", (0, 0, 0)), "color", f"'Light' object has no attribute 'color'; {ELSEWHERE}"),
+        (Light("key", (0, 0, 0)), "_name", "'Light' object has no attribute '_name'"),
+        (Light("key", (0, 0, 0)), "__array__", "'Light' object has no attribute '__array__'"),
+        (
+            Surface("body"),
+            "object_color",
+            "'Surface' object has no attribute 'object_color'; did you mean 'paint.object_color'?",
+        ),
+        (cube(), "vertices", "'Mesh' object has no attribute 'vertices'; did you mean 'coordinates'?"),
+    ],
+)
+def test_an_unknown_attribute_is_answered_by_the_name_that_was_meant(
+    owner: object, name: str, answer: str
+) -> None:
+    with pytest.raises(AttributeError) as caught:
+        getattr(owner, name)
+    assert str(caught.value) == answer
+    # Python adds a suggestion of its own to an error with an object.
+    assert caught.value.name == name
+    assert not hasattr(owner, name)
+
+
+def test_the_functions_that_are_suggested_exist() -> None:
+    assert {name for names in FUNCTIONS.values() for name in names} <= set(autocolor.__all__)
 
 
 def test_the_spelling_of_few_names_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,7 +37,7 @@ from autocolor.layers import save_layers
 from autocolor.mapping.legend import legend
 from autocolor.sending import shown_colors
 from autocolor.testing import scenes
-from ramtek_emu import Ramtek9300
+from ramtek_emu import GMR_9300, Ramtek9300
 from ramtek_emu.arrays import Colors
 from ramtek_emu.testing import entries, rasters
 from tests.small import SMALL, car, cube, held, opened, sphere, wall_scene
@@ -66,6 +66,21 @@ def test_a_saved_image_has_the_legend_as_a_display_shows_it(tmp_path: Path) -> N
     assert (np.asarray(Image.open(path)) == display.field()).all()
     assert (display.field() != image(scene, studio.picture)).any()
     assert studio._repr_png_() == display._repr_png_()
+
+
+def test_the_image_of_a_studio_is_smooth_and_has_the_size_and_the_legend_of_its_display(
+    tmp_path: Path,
+) -> None:
+    display = Ramtek9300(dataclasses.replace(GMR_9300, elements=320, lines=240))
+    studio, path = Studio(scene_of(cube(), scalar={"name": "z"}), display), tmp_path / "cube.png"
+    studio.scalar(bands=4)
+    studio.save_image(path)
+    save_image(tmp_path / "smooth.png", studio.scene, render(studio.scene, (320, 240), smooth=2))
+    assert path.read_bytes() == (tmp_path / "smooth.png").read_bytes()
+    with pytest.raises(OutputError):
+        studio.save_image(path)
+    studio.save_image(path, smooth=1, overwrite=True)
+    assert (np.asarray(Image.open(path)) == display.field()).all()
 
 
 @pytest.mark.parametrize("level", range(10))

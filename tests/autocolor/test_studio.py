@@ -5,8 +5,11 @@ from __future__ import annotations
 import copy
 import itertools
 import pickle
+import re
+import warnings
 from collections.abc import Callable
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -16,10 +19,12 @@ from hypothesis import strategies as st
 
 import autocolor
 from autocolor import (
+    EditWarning,
     InputError,
     OutputError,
     Scene,
     Studio,
+    Surface,
     UsageError,
     image,
     read_picture,
@@ -40,7 +45,7 @@ from autocolor.testing import (
     scenes,
     vectors,
 )
-from ramtek_emu import Ramtek9300
+from ramtek_emu import GMR_9300, Ramtek9300
 from tests.small import SMALL, car, cube, fresh, held, opened
 from tests.tables import refused
 
@@ -170,6 +175,62 @@ def test_recoloring_sends_the_entries_of_one_surface_and_no_word(edits: list[Rec
     assert held(display) == fresh(studio.scene)
 
 
+SEEN = "surface 'body' has these colors already; the recoloring changes nothing"
+UNSEEN = "surface 'spare' has no polygons; no picture shows its colors"
+
+
+@pytest.mark.parametrize(
+    ("surface", "color", "sentence"), [("body", "#b0b0b0", SEEN), ("spare", "red", UNSEEN)]
+)
+def test_a_recoloring_that_no_picture_shows_says_so(surface: str, color: str, sentence: str) -> None:
+    scene = car()
+    studio, _ = opened(scene.replace(surfaces=[*scene.surfaces, Surface("spare")]))
+    with pytest.warns(EditWarning, match=f"^{re.escape(sentence)}$") as caught:
+        studio.recolor(surface, object_color=color)
+    # The warning is at the line of the caller.
+    assert [each.filename for each in caught] == [__file__]
+    assert len(studio.history.to_undo) == (surface == "spare")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        studio.recolor("body", object_color="navy")
+
+
+def test_a_studio_is_used_by_one_thread_at_a_time() -> None:
+    # Where words stand for normals, the picture is rendered when it is asked for.
+    studio, display = opened_with("normals")
+    studio.light("key", intensity=0.5)
+    problems: list[str] = []
+
+    def use(edit: Callable[[], object]) -> None:
+        try:
+            edit()
+        except UsageError as problem:
+            problems.append(str(problem))
+
+    def at_once(_: object) -> None:
+        """Use the studio while its display receives words, from this thread and from another."""
+        assert studio.seen_at(12, 16) is not None
+        for edit in (lambda: studio.recolor("body", blend=0.3), studio.undo, lambda: studio.picture):
+            in_thread(edit)
+        in_thread(lambda: studio.scene)
+
+    def in_thread(edit: Callable[[], object]) -> None:
+        thread = Thread(target=use, args=(edit,))
+        thread.start()
+        thread.join()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(display, "send", at_once)
+        studio.recolor("body", blend=0.1)
+    assert problems == 3 * [
+        "a studio must be used by one thread at a time, not by two at once; make a Studio for each thread, or"
+        " wait until the other thread is ready"
+    ]
+    in_thread(lambda: studio.recolor("boddy", blend=0.2))
+    studio.recolor("body", blend=0.2)
+    assert problems[3:] == ["there is no surface 'boddy'; did you mean 'body'?"]
+
+
 @given(st.sampled_from(["stress", "z"]), st.lists(scale_edits, min_size=1, max_size=4))
 def test_another_color_scale_writes_no_word_and_the_entries_of_colored_surfaces_alone(
     name: str, edits: list[Edit]
@@ -279,6 +340,7 @@ def test_several_steps_are_undone_and_redone_at_once_and_sent_once() -> None:
     assert display.frame_buffer.written == written + 2 * studio.words.size
     assert held(display) == fresh(studio.scene)
     assert not studio.undo(3)
+    assert not studio.undo(0)
     assert not studio.redo(2)
     assert studio.scene is scenes[2]
     assert studio.history.steps[3:] == ["undo"] * 3 + ["redo"] * 2
@@ -475,20 +537,8 @@ test_what_is_refused = refused(
     lambda act: act(opened()[0]),
     [
         (
-            lambda studio: studio.recolor("body", blent=0.5),
-            "recolor takes fields of a Paint, not 'blent'; did you mean 'blend'?",
-        ),
-        (
             lambda studio: studio.scalar(None, bands=8),
             "scalar takes fields of a Scalar, or None alone; write it as in scalar(name='z', bands=8)",
-        ),
-        (
-            lambda studio: studio.undo(0),
-            "steps must be a whole number of at least 1, not 0; leave it out for 1",
-        ),
-        (
-            lambda studio: studio.redo(1.5),
-            "steps must be a whole number of at least 1, not 1.5; leave it out for 1",
         ),
         (
             Studio.reopen,
@@ -503,7 +553,8 @@ test_what_is_refused = refused(
     ("edit", "kind"),
     [
         (lambda studio: studio.recolor("body", object_color="rde"), InputError),
-        (lambda studio: studio.recolor("body", diffuse=1), UsageError),
+        (lambda studio: studio.recolor("body", diffuse=1), InputError),
+        (lambda studio: studio.recolor("body", "red"), UsageError),
         (lambda studio: studio.recolor("boddy", blend=0.5), UsageError),
         (lambda studio: studio.light("key", intensity=1e39), InputError),
         (lambda studio: studio.light("kee", intensity=1), UsageError),
@@ -578,9 +629,18 @@ class Port:
         self.send, self.receive = self.display.send, self.display.receive
 
 
+def test_a_studio_without_a_display_has_one_of_the_paper_s_configuration() -> None:
+    studio = Studio(car())
+    assert isinstance(studio.display, Ramtek9300)
+    assert studio.display.configuration == GMR_9300
+    assert held(studio.display) == (studio.words.tobytes(), studio.entries.tobytes())
+    assert Studio(car()).display is not studio.display
+
+
 def test_a_display_sees_a_studio_only_through_its_host_port() -> None:
     port = Port()
     studio = Studio(car(), port)
+    assert studio.display is port
     assert studio.words.shape == (480, 640)
     studio.light("key", on=False)
     assert held(port.display) == (studio.words.tobytes(), studio.entries.tobytes())

@@ -4,12 +4,14 @@ import errno
 import os
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ramtek_emu import OutputError, OutputExistsError, WriteError, writing
+from ramtek_emu import OutputError, OutputExistsError, Ramtek9300, WriteError, write_snapshot, writing
 from ramtek_emu.png import png_bytes, save_png
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
@@ -21,13 +23,13 @@ def test_saving_again_replaces_the_file_unless_overwrite_is_false(tmp_path: Path
     path.write_bytes(b"old")
     path.chmod(0o640)
     with pytest.raises(OutputExistsError) as refusal:
-        save_png(FIELD, path, overwrite=False)
+        save_png(FIELD, path)
     assert str(refusal.value) == (
         f"an output must be a new file, not {path}, which exists; choose another name, or overwrite it"
         " with --force (overwrite=True in Python)"
     )
     assert path.read_bytes() == b"old"
-    save_png(FIELD, path)
+    save_png(FIELD, path, overwrite=True)
     assert path.read_bytes() == png_bytes(FIELD)
     # A file that is replaced keeps its permissions.
     assert path.stat().st_mode & 0o777 == 0o640
@@ -38,7 +40,7 @@ def test_saving_through_a_link_keeps_the_link(tmp_path: Path) -> None:
     target, link = tmp_path / "target.png", tmp_path / "link.png"
     target.write_bytes(b"old")
     link.symlink_to(target)
-    save_png(FIELD, link)
+    save_png(FIELD, link, overwrite=True)
     assert link.is_symlink()
     assert target.read_bytes() == png_bytes(FIELD)
 
@@ -50,7 +52,7 @@ def test_a_file_system_without_links_gets_the_picture_all_the_same(
         raise OSError(1, "no links here")
 
     monkeypatch.setattr(os, "link", refuse)
-    save_png(FIELD, tmp_path / "field.png", overwrite=False)
+    save_png(FIELD, tmp_path / "field.png")
     assert os.listdir(tmp_path) == ["field.png"]
 
 
@@ -63,7 +65,7 @@ def test_after_a_failed_write_the_old_file_is_whole(tmp_path: Path, monkeypatch:
 
     monkeypatch.setattr(os, "fsync", full_disk)
     with pytest.raises(WriteError, match="no space left on device"):
-        save_png(FIELD, path)
+        save_png(FIELD, path, overwrite=True)
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["field.png"]
 
@@ -134,6 +136,27 @@ def test_impossible_outputs_are_refused_before_anything_is_done(tmp_path: Path) 
             refuse_output(place, overwrite=True)
         assert str(refusal.value) == sentence
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("write", "thing"),
+    [
+        (lambda path: Ramtek9300().save_png(path), "a picture"),
+        (partial(write_snapshot, Ramtek9300()), "a snapshot"),
+    ],
+)
+def test_a_picture_and_a_snapshot_are_written_to_png_files_alone(
+    tmp_path: Path, write: Callable[[Path], None], thing: str
+) -> None:
+    for name in ("a.jpg", "a"):
+        with pytest.raises(OutputError) as refusal:
+            write(tmp_path / name)
+        sentence = f"{thing} must be written to a file that ends in .png, not to {tmp_path / name}; rename it"
+        assert str(refusal.value) == sentence
+    assert os.listdir(tmp_path) == []
+    write(tmp_path / "a.PNG")
+    with pytest.raises(OutputExistsError):
+        write(tmp_path / "a.PNG")
 
 
 def part(folder: Path, name: str, number: int = 1) -> Path:

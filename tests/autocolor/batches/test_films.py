@@ -73,6 +73,15 @@ def test_a_film_is_decoded_to_exactly_its_frames(
     assert np.array_equal(decoded(tmp_path / f"film{suffix}"), rendered(SCENE, made))
 
 
+def test_frames_are_made_between_variants(tmp_path: Path) -> None:
+    colors = [{COLOR: "red"}, {COLOR: "blue"}, {COLOR: "red"}]
+    # A film that does not begin again shows the last variant, too.
+    for count, loop in ((6, True), (5, False)):
+        path = tmp_path / f"{count}.webp"
+        assert animate((SCENE, SMOOTH), colors, path, frames=count, loop=loop).frames == count
+        assert np.array_equal(decoded(path), rendered(SCENE, frames(SCENE, colors, count, loop=loop)))
+
+
 def test_frames_keep_their_order_where_another_would_cost_less(tmp_path: Path) -> None:
     back_and_forth = tuple(SWEEP[number] for number in (0, 4, 0, 4))
     animate(SCENE, [frame.settings for frame in back_and_forth], tmp_path / "film.apng", size=SIZE)
@@ -233,8 +242,8 @@ def test_an_existing_file_is_refused_before_anything_is_rendered_unless_it_may_b
 REFUSED: list[tuple[str, dict[str, Any], str]] = [
     ("film.mp4", {}, "must be written to .webp, .apng, .gif, frame-{number:04}.png or .ramtek, not to"),
     ("film.png", {}, "numbered pictures must have a pattern such as frame-{number:04}.png, not"),
-    ("film.gif", {"frames_per_second": 60}, "frames per second must be a number from 0.1 to 50, not 60"),
-    ("film.webp", {"frames_per_second": "24"}, "per second must be a number from 0.1 to 100, not '24'"),
+    ("film.gif", {"fps": 60}, "frames per second must be a number from 0.1 to 50, not 60"),
+    ("film.webp", {"fps": "24"}, "per second must be a number from 0.1 to 100, not '24'"),
     ("film.ramtek", {"smooth": 2}, "a stream must have smooth=1, because a display cannot average"),
 ]
 

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, UsageError, Variant, grid, read_variants, write_palette
+from autocolor import InputError, Palette, UsageError, Variant, grid, read_variants, write_palette
 from autocolor.batches.table import (
     LARGEST_TABLE,
     MOST_VARIANTS,
@@ -133,6 +133,15 @@ def written(folder: Path, name: str, data: str | bytes) -> Path:
     return path
 
 
+def test_a_palette_is_an_axis_with_the_names_of_its_colors_and_a_list_in_settings() -> None:
+    palette = Palette(["red", "lime", "navy"], ["Deep/Sea", "", "deep/sea"])
+    variants = grid({"a": palette, "b": [1]})
+    assert [variant.name for variant in variants] == ["Deep/Sea", "00ff00", "deep/sea-2"]
+    colors = ["#ff0000", "#00ff00", "#000080"]
+    assert settings_of(variants) == [{"a": color, "b": 1} for color in colors]
+    assert Variant("ramp", {"a": palette}).settings == {"a": colors}
+
+
 def test_a_csv_table_has_texts_and_an_empty_cell_sets_nothing(tmp_path: Path) -> None:
     path = written(
         tmp_path,
@@ -181,7 +190,7 @@ REFUSED_FILES = [
         "t.csv, row 100002: a table must have at most 100,000 var",
     ),
     ("t.json", "{}", "t.json: a table in JSON must be a list of objects, not {}"),
-    ("t.json", "[1]", "t.json, row 1: a variant must be a table of values by key, not 1"),
+    ("t.json", "[1]", "t.json, row 1: a variant must be a table of values by key, not 1; write it as in"),
     ("t.json", '[{"name": 3}]', "t.json, row 1: a variant must have a name of at least one character, not 3"),
     ("t.json", '[{"time": true}]', f"t.json, row 1: {TIME} true"),
     ("t.json", f'[{{"time": {"9" * 400}}}]', f"t.json, row 1: {TIME} 999"),
@@ -207,7 +216,7 @@ def test_a_bad_table_is_refused_with_its_place(
 
 
 LIST = "variants must be a list of tables or of Variants, not"
-WRITTEN = "write them as in [{'ambient': 0.1}, {'ambient': 0.2}]"
+WRITTEN = "write them after the scene, as in [{'ambient': 0.1}, {'ambient': 0.2}]"
 GRID = "a grid must have 1 to 100,000 variants, not"
 VARY = "--vary must be KEY=A,B,C or KEY=START:STOP:COUNT, not"
 ENDS = (
@@ -232,7 +241,10 @@ test_wrong_variants_are_refused = refused(
         ),
         (lambda: grid({"a": []}), f"{GRID} 0; give a value for each key"),
         (lambda: grid({key: range(100) for key in "abc"}), f"{GRID} 1,000,000; give fewer values"),
-        (lambda: grid({"a": "red"}), "a: an axis must be a list of values, not 'red'; write it as a list"),
+        (
+            lambda: grid({"a": "red"}),
+            "a: an axis must be a list of values or a Palette, not 'red'; write it as a list",
+        ),
         (
             lambda: grid(["a"]),  # type: ignore[arg-type]
             "a grid must be lists of values by key, not ['a']; write it as in {'ambient': [0.1, 0.2]}",

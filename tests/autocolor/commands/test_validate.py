@@ -33,7 +33,7 @@ def test_faults_of_the_mesh_are_listed_and_count_under_strict(folder: Path, run:
 
 def test_faults_are_shown_in_a_window(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     shown: list[History] = []
-    monkeypatch.setattr("autocolor.commands.view.show", shown.append)
+    monkeypatch.setattr("autocolor.commands.window.show", shown.append)
     assert run("validate", "two.obj", "--show").code == 0
     assert shown[0].scene.scalar is not None
     assert shown[0].scene.scalar.name == "fault"

@@ -10,15 +10,19 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
+import autocolor
+from autocolor import Studio, UsageError, read_scene
 from autocolor.commands import view
-from autocolor.commands.view import connected
+from autocolor.commands.window import connected
 from autocolor.files import opening
 from autocolor.files.state import recent_files
 from autocolor.screens.session import Clipboard
 from ramtek_emu import NoScreenError, Ramtek9300
 from ramtek_emu.monitor import window
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
+from tests import small
 from tests.autocolor.commands.conftest import Refused, Run
+from tests.small import car
 
 
 @pytest.fixture
@@ -120,6 +124,81 @@ def test_without_a_screen_render_is_named(
     )
 
 
+# From Python.
+
+
+def shows_its_scene(studio: Studio) -> bool:
+    """Whether the display of a studio shows what it would show to a new studio of the scene."""
+    displays: list[Any] = [studio.display, Studio(studio.scene).display]
+    return small.held(displays[0]) == small.held(displays[1])
+
+
+def test_the_steps_in_the_window_of_a_studio_are_its_steps(monitors: list[Any]) -> None:
+    studio = Studio(car())
+    studio.light("key", intensity=0.5)
+    before = studio.scene
+
+    def script(monitor: Any) -> None:
+        assert monitor.display.words[:4].tobytes() == studio.words[:4].tobytes()
+        monitor.on_key(Key("c", "c"))
+        monitor.on_key(Key("z", "", control=True))
+        monitor.on_key(Key("1", "1"))
+        monitor.on_tick()
+        # The studio has the steps, so that nothing is lost.
+        assert monitor.on_close()
+
+    monitors[0].script = staticmethod(script)
+    studio.view_window(fit=True)
+    assert (monitors[1].full_screen, monitors[1].fit) == (False, True)
+    assert studio.scene.equals(before.with_light("key", on=False))
+    assert shows_its_scene(studio)
+    assert studio.undo(2)
+    assert studio.scene.light("key").intensity == 1
+    assert shows_its_scene(studio)
+
+
+def test_an_error_in_the_window_of_a_studio_leaves_its_steps_on_the_display(monitors: list[Any]) -> None:
+    studio = Studio(car())
+
+    def script(monitor: Any) -> None:
+        monitor.on_key(Key("1", "1"))
+        raise KeyboardInterrupt
+
+    monitors[0].script = staticmethod(script)
+    with pytest.raises(KeyboardInterrupt):
+        studio.view_window()
+    assert not studio.scene.light("key").on
+    assert shows_its_scene(studio)
+
+
+def test_a_scene_a_file_and_a_studio_are_viewed(folder: Path, monitors: list[Any]) -> None:
+    studio = Studio(car())
+    for scene in (car(), "scene", folder / "two.obj", studio):
+        autocolor.view(scene, full_screen=True)
+    names = ["scene", "scene", "two", "scene"]
+    assert [monitor.caption.split(" - ")[1] for monitor in monitors[1:]] == names
+    assert all(monitor.full_screen for monitor in monitors[1:])
+    monitors[0].script = staticmethod(lambda monitor: monitor.on_key(Key("1", "1")) and monitor.on_close())
+    autocolor.view(studio)
+    assert studio.history.steps
+    with pytest.raises(UsageError, match="a scene must be a Scene, not None"):
+        autocolor.view(None)  # type: ignore[arg-type]
+
+
+def test_a_viewed_scene_is_saved_to_its_file_and_the_user_is_asked_first(
+    folder: Path, monitors: list[Any]
+) -> None:
+    def script(monitor: Any) -> None:
+        monitor.on_key(Key("1", "1"))
+        assert not monitor.on_close()
+        monitor.on_key(Key("s", "", control=True))
+        assert monitor.on_close()
+
+    monitors[0].script = staticmethod(script)
+    autocolor.view("scene")
+    assert not read_scene("scene").lights[0].on
+
+
 # The window in which the user waits.
 
 
@@ -157,7 +236,7 @@ class Waited:
 
         monkeypatch.setattr(window, "Monitor", Stepped)
         monkeypatch.setattr(window, "open_screen", lambda: None)
-        monkeypatch.setattr("autocolor.commands.view.FIRST_SIGN_SECONDS", 0.0)
+        monkeypatch.setattr("autocolor.commands.window.FIRST_SIGN_SECONDS", 0.0)
 
 
 @pytest.fixture
@@ -196,6 +275,19 @@ def test_closing_the_window_ends_the_command_while_a_scene_is_read(
     assert run("view", "scene") == (0, "", "")
     assert waited.captions == ["autocolor - reading scene ..."]
     slow.set()
+
+
+def test_closing_the_window_before_the_first_picture_ends_view(monkeypatch: pytest.MonkeyPatch) -> None:
+    waited, closed = Waited(monkeypatch), threading.Event()
+
+    def close(monitor: Any) -> None:
+        monitor.close()
+        closed.set()
+
+    waited.on_step = close
+    monkeypatch.setattr("autocolor.commands.window.viewer_of", lambda _: closed.wait(60))
+    autocolor.view(car())
+    assert waited.captions == ["autocolor - rendering scene ..."]
 
 
 def test_an_error_that_is_found_while_the_user_waits_closes_the_window(

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import MissingInputError, OutputError, Palette, read_palette, write_palette
+from autocolor import MissingInputError, OutputError, Paint, Palette, Scalar, read_palette, write_palette
 from autocolor.files.palette_file import LONGEST_NAME, is_palette
+from autocolor.scene.columns import replaced
 from tests.tables import refused
 
 COLORS = st.tuples(*[st.integers(0, 255)] * 3)
@@ -120,6 +121,7 @@ test_what_cannot_be_written_is_refused = refused(
     lambda given: write_palette(*given[:2], names=given[2] if given[2:] else None),
     [
         (("a.gpl", np.zeros(3, np.uint8)), f"color 1 of a palette: a color {A_COLOR} 0; correct it"),
+        (("a.gpl", 3), "the colors of a palette must be a sequence, not 3; give a list"),
         (("a.gpl", ["red", "rde"]), f"color 2 of a palette: a color {A_COLOR} 'rde'; did you mean 'red'?"),
         (
             ("a.gpl", ["red"], ["a", "b"]),
@@ -142,6 +144,13 @@ def test_a_color_is_found_by_its_name_whatever_the_capitals() -> None:
     assert palette.color_named("sea") == (0, 0, 255)
     assert palette.color_named("Gras") is None
     assert Palette(["red"]).color_named("") is None
+
+
+def test_a_palette_is_a_sequence_of_its_colors_and_so_a_ramp_and_a_scale() -> None:
+    palette = Palette(["red", "lime", "navy"], ["Signal red", "", "Sea"])
+    assert [*palette] == [palette[0], *palette[1:]] == [(255, 0, 0), (0, 255, 0), (0, 0, 128)]
+    assert Paint().replace(ramp=palette).ramp == palette.colors
+    assert replaced(Scalar("z"), {"scale": palette}).scale == palette.colors
 
 
 def test_files_of_paints_are_told_from_other_files(tmp_path: Path) -> None:

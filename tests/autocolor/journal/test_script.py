@@ -31,8 +31,8 @@ def run_script(text: str) -> tuple[Studio, Ramtek9300]:
     """The studio and the display of a script that is run, on a small display."""
     display = Ramtek9300(SMALL)
     names: dict[str, Any] = {}
-    assert text.count("Ramtek9300())") == 1
-    exec(text.replace("Ramtek9300())", "display)"), {"display": display}, names)
+    assert text.count("Studio(scene)") == 1
+    exec(text.replace("Studio(scene)", "Studio(scene, display)"), {"display": display}, names)
     studio = names["studio"]
     assert isinstance(studio, Studio)
     return studio, display

@@ -145,7 +145,7 @@ def test_every_entry_is_the_backgrounds_a_surfaces_or_a_screens(scene: Scene) ->
     free = np.ones(WORDS, np.bool_)
     free[[BACKGROUND, *range(SCREENS.first, WORDS)]] = False
     for name, (first, levels) in image.ranges.items():
-        assert (image.entries[first : first + levels] == image.entries_of(scene.surface(name))).all()
+        assert (image.entries[first : first + levels] == image.entries_of(name)).all()
         free[first : first + levels] = False
     assert not image.entries[free].any()
     assert not image.entries.flags.writeable

@@ -39,6 +39,18 @@ def test_an_aim_follows_the_position(
     assert axis == pytest.approx(away / np.linalg.norm(away))
 
 
+test_a_field_that_no_light_has_is_refused = refused(
+    lambda changes: Light("key", (0, 0, 0)).replace(**changes),
+    [
+        (
+            {name: "red"},
+            f"light 'key': there is no field {name!r}; a light has no color here: set the surface's"
+            " light_color",
+        )
+        for name in ("color", "colour", "light_color")
+    ],
+)
+
 test_a_light_that_breaks_a_rule_is_refused_with_its_name = refused(
     lambda fields: Light(**{"name": "key", "position": (0, 0, 0), **fields}),
     [

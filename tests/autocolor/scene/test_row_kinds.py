@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
+from dataclasses import FrozenInstanceError
 from typing import Any, ClassVar, get_args
 
 import pytest
@@ -31,6 +32,7 @@ from autocolor.scene.row_kinds import (
     Reference,
     References,
     RowList,
+    TableRows,
     nested,
     references_of,
     table_row,
@@ -92,8 +94,8 @@ class Box(Row):
 class Stack(Row):
     """A row with a table."""
 
-    boxes: tuple[Box, ...] = column_of(
-        RowList(Box, by_name=True), default=(), tier=Tier.FRAME, help="The boxes."
+    boxes: TableRows[Box] = column_of(
+        RowList(Box, by_name=True), default=TableRows(), tier=Tier.FRAME, help="The boxes."
     )
 
 
@@ -195,7 +197,8 @@ def test_a_missing_misspelt_or_wrong_argument_is_found_by_type_checkers_and_at_r
         Light("key", (0, 0, 0), concentrtion=1)  # type: ignore[call-arg]
     with pytest.raises(InputError, match="concentration must be a finite number of at least 0, not 'x'"):
         Light("key", (0, 0, 0), concentration="x")  # type: ignore[arg-type]
-    with pytest.raises(AttributeError):
+    changing = r"a Light cannot be changed; use replace\(intensity=...\), which returns another Light"
+    with pytest.raises(FrozenInstanceError, match=changing):
         Light("key", (0, 0, 0)).intensity = 2  # type: ignore[misc]
     with pytest.raises(TypeError, match="'help'"):
         number(default=1.0, tier=Tier.LIGHT)  # type: ignore[call-arg]

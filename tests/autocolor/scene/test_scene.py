@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import pickle
 from collections.abc import Sequence
 from typing import Any
 
@@ -119,6 +120,15 @@ def test_every_part_has_the_first_surface_that_there_is(
     of_red = "door" if tables.get("surfaces") == "parts" else "red"
     for surface in scene.surfaces[len(given) :]:
         assert surface.levels == (77 if surface.name == of_red else None)
+
+
+def test_the_only_surface_is_that_of_all_parts_if_no_part_has_it() -> None:
+    ball = [Surface("ball", levels=99)]
+    scene = scene_of(car(), surfaces=ball, material_of_part={"hood": "red"})
+    assert (surfaces_of_parts(scene), scene.surfaces[:1]) == (["ball", "red", "ball"], tuple(ball))
+    for parts in ({"door": "ball"}, {}):
+        two = [*ball, Surface("box")] if not parts else ball
+        assert surfaces_of_parts(scene_of(car(), surfaces=two, surface_of_part=parts))[1:] == ["surface"] * 2
 
 
 def test_more_materials_than_surface_numbers_share_the_last_surface() -> None:
@@ -301,16 +311,54 @@ KEY = Light("key", (0, -1, 0))
 LIGHT_TABLE = f"lights[1] must be a table of {listed(keys_of(Light))}, not 'key'"
 NO_SELF = f"view: there is no field 'self'; choose {either(keys_of(View))}"
 
+
+def test_a_row_is_found_by_number_or_by_name_after_every_edit() -> None:
+    scene = car_scene().with_saved_view("hood").with_saved_view("wheel")
+    edited = [
+        scene,
+        scene.with_light("key", intensity=2),
+        scene.with_light_in_world("key", follows="eye"),
+        scene.with_paint("door", blend=1),
+        scene.with_surface("door", diffuse=0.5),
+        scene.with_part("hood", stage=True),
+        scene.without_named_view("wheel"),
+        scene.between(scene.with_light("key", intensity=2), 0.5),
+        pickle.loads(pickle.dumps(scene)),
+    ]
+    for each in edited:
+        for rows in (each.lights, each.surfaces, each.parts, each.views, each.lights_in_world):
+            assert [rows[row.name] for row in rows] == [*rows]
+            assert [row.name in rows for row in rows] == [row in rows for row in rows] == [True] * len(rows)
+    lights = scene.lights
+    assert lights == tuple(lights)
+    assert hash(lights) == hash(tuple(lights))
+    assert type(lights[:1]) is tuple
+    assert lights[0] is lights["key"] is scene.light("key")
+    unknown: object = "keys"
+    assert unknown not in lights
+
+
 test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = refused(
     lambda ask: ask(car_scene()),
     [
         (lambda scene: scene.light("keys"), "there is no light 'keys'; did you mean 'key'?"),
+        (lambda scene: scene.lights["keys"], "there is no light 'keys'; did you mean 'key'?"),
+        (lambda scene: scene.replace(lights=()).lights["key"], "there is no row 'key'"),
         (lambda scene: scene.surface("dor"), "there is no surface 'dor'; did you mean 'door'?"),
         (lambda scene: scene.part("x"), "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.without_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.with_copied_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.with_paint("dor", blend=1), "there is no surface 'dor'; did you mean 'door'?"),
+        (
+            lambda scene: scene.with_paint("door", "red"),
+            "a recoloring must name its fields, not give 'red' alone; write it as in recolor('door',"
+            " object_color='red')",
+        ),
+        (
+            lambda scene: scene.with_rig("rig.toml"),
+            "a rig must be a Rig, not 'rig.toml'; read one from a file with `read_rig`",
+        ),
         (
             lambda scene: scene.with_saved_view("hood").with_taken_view("hod"),
             "there is no named view 'hod'; did you mean 'hood'?",
