@@ -1,4 +1,4 @@
-"""Command line: loads a command by name, runs it, and completes words in bash; for `autocolor` and `ramtek`.
+"""Command line: loads a command by name and runs it; for `autocolor` and `ramtek`.
 
 A command writes its result to stdout and all messages to stderr. It ends with an exit code, and shows no
 traceback unless --debug is given.
@@ -14,15 +14,13 @@ import select
 import signal
 import sys
 import traceback
-from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
 from types import TracebackType
-from typing import Any, ClassVar, Final, NoReturn, TextIO
+from typing import ClassVar, Final, NoReturn, TextIO
 
 import click
-from click.shell_completion import BashComplete, CompletionItem, split_arg_string
 
 from ramtek_emu.errors import escaped
 
@@ -280,9 +278,8 @@ def _exit_code(command: click.Command, name: str, arguments: list[str]) -> objec
     """The exit code of a command, or None. Click's own `main` would end silently with 1 at a broken pipe."""
     completion = f"_{name.upper()}_COMPLETE"
     if completion in os.environ:
-        from click.shell_completion import add_completion_class, shell_complete
+        from click.shell_completion import shell_complete
 
-        add_completion_class(WholeWords)
         return shell_complete(command, {}, name, completion, os.environ[completion])
     try:
         with command.make_context(name, [*arguments]) as context:
@@ -371,85 +368,3 @@ def _leave(code: int) -> NoReturn:
             # Otherwise the exit would fail and change the code.
             _discard(stream)
     sys.exit(code)
-
-
-SCRIPT: Final = """\
-%(complete_func)s() {
-    local kind value
-    COMPREPLY=()
-    while IFS=, read -r kind value; do
-        case $kind in
-            dir) compopt -o dirnames ;;
-            file) compopt -o default ;;
-            plain) COMPREPLY+=("$value") ;;
-        esac
-    done < <(
-        IFS=$'\\n'
-        env COMP_WORDS="${COMP_WORDS[*]}" COMP_CWORD=$COMP_CWORD %(complete_var)s=bash_complete "$1"
-    )
-    if [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *[=./] ]]; then
-        compopt -o nospace
-    fi
-}
-
-complete -o nosort -F %(complete_func)s %(prog_name)s
-"""
-"""The function that bash runs. It adds no space after a candidate that ends with "=", "." or "/"."""
-
-
-class WholeWords(BashComplete):
-    """Click's completion for bash, with words as they are typed.
-
-    Bash splits words at "=": `ambient=0.2` becomes three words. Click would take them for three arguments and
-    complete nothing after `--set KEY=`, so they are joined again here. Bash keeps the start of a word up to
-    its last "=", so candidates are given without that start.
-    """
-
-    source_template: ClassVar[str] = SCRIPT
-    _prefix: str = ""
-    """The start of the incomplete word that bash keeps; candidates are given without it."""
-
-    def get_completion_args(self) -> tuple[list[str], str]:
-        """The whole words before the cursor, and the incomplete word at the cursor."""
-        count = int(os.environ["COMP_CWORD"]) + 1
-        # Bash does not list an empty word at the cursor.
-        words = split_arg_string(os.environ["COMP_WORDS"])[:count]
-        typed = joined(words)
-        incomplete = typed.pop() if len(words) == count else ""
-        self._prefix = "" if words[-1:] == [incomplete] else prefix_in_bash(incomplete)
-        return typed[1:], incomplete
-
-    def format_completion(self, item: CompletionItem[Any]) -> str:
-        """A candidate for the script, escaped for bash."""
-        value = str(item.value)
-        if item.type == "plain":
-            value = re.sub(r"([^\w@%+=:,./-])", r"\\\1", value.removeprefix(self._prefix))
-        return f"{item.type},{value}"
-
-
-def joined(words: Sequence[str]) -> list[str]:
-    """The words as they were typed: the parts that bash split at "=" are joined again.
-
-    >>> joined(["render", "--set", "ambient", "=", "0.2", "-o", "x.png"])
-    ['render', '--set', 'ambient=0.2', '-o', 'x.png']
-    """
-    typed: list[str] = []
-    follows = False
-    for word in words:
-        is_sign = bool(word) and not word.strip("=")
-        if typed and (is_sign or follows):
-            typed[-1] += word
-        else:
-            typed.append(word)
-        follows = is_sign
-    return typed
-
-
-def prefix_in_bash(word: str) -> str:
-    """The start of an incomplete word that bash keeps, up to its last "=", without an option's name.
-
-    >>> prefix_in_bash("scaling=ob"), prefix_in_bash("--set=scaling=ob"), prefix_in_bash("--set=sc")
-    ('scaling=', 'scaling=', '')
-    """
-    value = word.partition("=")[2] if word.startswith("-") else word
-    return value[: value.rfind("=") + 1]

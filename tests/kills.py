@@ -33,7 +33,7 @@ from autocolor.files.meshes.csv_tables import write_csv_tables
 from autocolor.files.meshes.npy_tables import write_npy_tables
 from autocolor.files.meshes.obj import write_obj
 from autocolor.files.picture_file import read_picture, write_picture
-from autocolor.journal.autosave import Autosave, journal_in, left_sessions
+from autocolor.journal.autosave import JOURNAL, Autosave, left_sessions
 from autocolor.journal.history import History
 from autocolor.journal.places import ScenePlace, Source, checksum_of, place_of
 from autocolor.journal.saving import save_session
@@ -132,7 +132,7 @@ def save_step(folder: Path, number: int) -> None:
     os.environ["XDG_STATE_HOME"] = str(folder)
     left = left_sessions()[:1]
     if left:
-        history = read_journal(journal_in(left[0])).history
+        history = read_journal(left[0] / JOURNAL).history
     else:
         write_scene(folder / "scene", scene_number(0))
         source = Source(str(folder / "scene"))
@@ -148,7 +148,7 @@ def read_steps(folder: Path) -> object:
     """The checksum of the scene that the journal recovers."""
     os.environ["XDG_STATE_HOME"] = str(folder)
     (left,) = left_sessions()
-    return checksum_of(read_journal(journal_in(left)).history.scene)
+    return checksum_of(read_journal(left / JOURNAL).history.scene)
 
 
 def save_in_studio(folder: Path, number: int) -> None:

@@ -6,7 +6,7 @@ from typing import ClassVar, Final
 
 import click
 
-from autocolor.commands.options import bringing_paints, paints_option, verbose_option
+from autocolor.commands.options import bringing_paints, flag, paints_option, verbose_option
 from autocolor.errors import UsageError
 from ramtek_emu.command_line import CommandGroup, version_option
 
@@ -42,25 +42,14 @@ class AutocolorGroup(CommandGroup):
         "sql": "query and change the tables of a scene with SQL",
     }
 
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the arguments name. Two tables in the place of a scene are refused with advice."""
-        name, command, others = super().resolve_command(ctx, args)
-        if len(others) > 1 and all(other.lower().endswith((".csv", ".npy")) for other in others[:2]):
-            from autocolor.files.opening import TWO_TABLES
-
-            ctx.fail(f"{' '.join(others[:2])}: two tables must be one argument, not two; {TWO_TABLES}")
-        return name, command, others
-
 
 @click.group(
     cls=AutocolorGroup,
     invoke_without_command=True,
     epilog=EXAMPLES,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
 )
-@click.option("--debug", is_flag=True, help="Show the traceback of an error.")
+@flag("--debug", "Show the traceback of an error.")
 @paints_option
 @verbose_option
 @version_option

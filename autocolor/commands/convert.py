@@ -7,6 +7,7 @@ from typing import Final
 
 import click
 
+from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
 from autocolor.errors import UsageError
@@ -25,20 +26,30 @@ Examples:
 
 
 def _show_formats(context: click.Context, _: click.Parameter, is_given: bool) -> None:
-    if is_given and not context.resilient_parsing:
-        click.echo("\n".join(format_lines()))
-        context.exit()
+    """List the formats: the names, whether each is read and written, and the endings of its files."""
+    if not is_given or context.resilient_parsing:
+        return
+    from autocolor.files.opening import FORMATS
+
+    rows = []
+    for each in sorted(FORMATS, key=lambda each: each.name.casefold()):
+        folder = [f"a folder of {', '.join(each.in_folder)}"] if each.in_folder else []
+        rows.append(
+            (each.name, " ".join(["read, written:" if each.write else "read:", *each.suffixes, *folder]))
+        )
+    formatter = click.HelpFormatter(width=110)
+    formatter.write_dl(rows)
+    click.echo(formatter.getvalue(), nl=False)
+    context.exit()
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options()
 @click.argument("out", type=click.Path())
-@click.option(
-    "--to",
-    metavar="FORMAT",
-    help="Format of OUT, instead of the format of its ending; --formats lists the names.",
+@option(
+    "--to", "FORMAT", "Format of OUT, instead of the format of its ending; --formats lists the names.", str
 )
-@click.option("--force", is_flag=True, help="Overwrite existing files.")
+@force_option
 @click.option(
     "--formats",
     is_flag=True,
@@ -47,8 +58,7 @@ def _show_formats(context: click.Context, _: click.Parameter, is_given: bool) ->
     callback=_show_formats,
     help="List the formats that are read and written, and exit.",
 )
-@click.pass_context
-def convert(context: click.Context, source: SceneSource, out: str, to: str | None, force: bool) -> None:
+def convert(source: SceneSource, out: str, to: str | None, force: bool) -> int:
     """Write SCENE, a mesh or a whole scene, to OUT; the ending of OUT determines the format.
 
     Without an ending, OUT becomes a scene folder. Anything that OUT's format cannot hold is left out and
@@ -72,17 +82,4 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     for phrase in lost:
         tell(f"autocolor: {path.name}: left out, as {output.name} cannot hold it: {phrase}")
     tell_written(*map(str, written))
-    context.exit(REPAIRED if source.strict and lost else ended(report, source))
-
-
-def format_lines() -> list[str]:
-    """A line for each format: its name, the endings of its files, and whether it is read and written."""
-    from autocolor.files.opening import FORMATS
-
-    rows = []
-    for each in sorted(FORMATS, key=lambda each: each.name.casefold()):
-        folder = [f"a folder of {', '.join(each.in_folder)}"] if each.in_folder else []
-        endings = " ".join([*each.suffixes, *folder])
-        rows.append((each.name, endings, "read, written" if each.write else "read"))
-    name_width, ending_width = (max(len(row[column]) for row in rows) for column in (0, 1))
-    return [f"{name:{name_width}}  {endings:{ending_width}}  {uses}" for name, endings, uses in rows]
+    return REPAIRED if source.strict and lost else ended(report, source)

@@ -7,8 +7,7 @@ from typing import Final
 
 import click
 
-from autocolor.commands.options import size_option
-from autocolor.commands.scenes import SceneSource, ended, read_edited, scene_options, set_option
+from autocolor.commands.scenes import SceneSource, ended, read_edited, scene_options
 from ramtek_emu.command_line import tell
 
 EXAMPLES: Final = """\b
@@ -20,27 +19,16 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options("settings", "size")
 @click.argument("line", type=int)
 @click.argument("element", type=int)
-@set_option
-@size_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with all lights.")
-@click.pass_context
-def explain(
-    context: click.Context,
-    source: SceneSource,
-    line: int,
-    element: int,
-    settings: tuple[str, ...],
-    size: tuple[int, int],
-    as_json: bool,
-) -> None:
+def explain(source: SceneSource, line: int, element: int, as_json: bool) -> int:
     """Explain why the pixel at LINE and ELEMENT of SCENE looks as it does.
 
     You see the rows of the tables, the point and its normal, each light by the equation of the paper, the
-    level, the word and the color. Lines are counted from the top and
-    elements from the left, from 0; rows of tables are counted from 1.
+    level, the word and the color. Lines are counted from the top and elements from the left, from 0; rows of
+    tables are counted from 1.
     """
     from autocolor.explanation.explain import explain as explained
     from autocolor.explanation.text import rows_of_text
@@ -48,8 +36,8 @@ def explain(
     from autocolor.rendering import rendering
     from autocolor.visibility.visible_points import Sight
 
-    elements, lines = size
-    scene, report = read_edited(source, settings, size)
+    elements, lines = source.size
+    scene, report = read_edited(source)
     rendered = rendering(scene, lines, elements)
     image = display_image(scene, rendered.picture)
     explanation = explained(Sight(scene, rendered.points), image, line, element)
@@ -57,4 +45,4 @@ def explain(
         click.echo(json.dumps(explanation.to_plain(), indent=2))
     else:
         tell(*map(str, rows_of_text(explanation)), err=False)
-    context.exit(ended(report, source))
+    return ended(report, source)

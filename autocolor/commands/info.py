@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from autocolor.commands.options import json_option
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options, tell_up
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
-    from autocolor.scene.mesh import Mesh
     from autocolor.scene.scalar import MeshScalar
 
 EXAMPLES: Final = """\b
@@ -23,11 +23,14 @@ Examples:
 """
 
 
+NORMALS: Final = {None: "computed", True: "the file's", False: "the file's, computed where it has none"}
+"""Which normals are used, by whether the file's own are complete."""
+
+
 @click.command(epilog=EXAMPLES)
-@scene_options
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.pass_context
-def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
+@scene_options()
+@json_option
+def info(source: SceneSource, as_json: bool) -> int:
     """Print the nodes, polygons, scalars, parts, surfaces, lights, view and intensities of SCENE."""
     report = read(source)
     tell_up(report, source)
@@ -36,7 +39,7 @@ def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
         click.echo(json.dumps(facts, indent=2))
     else:
         tell(*lines_of(facts), err=False)
-    context.exit(ended(report, source))
+    return ended(report, source)
 
 
 def facts_of(report: SceneReport) -> dict[str, Any]:
@@ -46,7 +49,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
     from autocolor.scene.mesh_faults import quad_shapes
 
     scene = report.scene
-    mesh = scene.mesh
+    mesh, own = scene.mesh, scene.mesh.own_normals
     picture = render(scene)
     ranges = display_image(scene, picture).ranges
     low, high = mesh.bounds
@@ -57,7 +60,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "triangles": mesh.triangle_count,
         "edges": mesh.edge_count,
         "quads": quad_shapes(mesh),
-        "normals": normals_fact(mesh),
+        "normals": NORMALS[None if own is None else own.are_complete],
         "bounds": [low.tolist(), high.tolist()],
         "scalars": [scalar_facts(scalar) for scalar in mesh.scalars],
         "parts": {part.name: part.surface for part in scene.parts},
@@ -78,13 +81,6 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "repairs": list(report.repairs),
         "created": list(report.created),
     }
-
-
-def normals_fact(mesh: Mesh) -> str:
-    """Which normals of a mesh are used."""
-    if mesh.own_normals is None:
-        return "computed"
-    return "the file's" if mesh.own_normals.are_complete else "the file's, computed where it has none"
 
 
 def scalar_facts(scalar: MeshScalar) -> dict[str, Any]:

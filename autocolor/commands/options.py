@@ -1,5 +1,6 @@
-"""Options that several commands share, such as `--normals`, `--paper`, `--hold-exposure` and `--size`.
+"""Options that several commands share, such as `--paints`, `--size`, `--smooth` and `--limit`.
 
+The options for SCENE are those of `scenes`.
 An invalid value of an option is a UsageError, not an InputError.
 """
 
@@ -8,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -18,9 +19,24 @@ from ramtek_emu.command_line import tell
 if TYPE_CHECKING:
     from logging import LogRecord
 
-    from autocolor.lighting.picture import Picture
-    from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+"""A decorator of the function of a command."""
+
+
+def option(names: str, metavar: str, help: str, type: Any = None, **more: Any) -> Decorator:
+    """An option with a value, by default a path: its names, the name of its value, and its help."""
+    return click.option(*names.split(), metavar=metavar, help=help, type=type or click.Path(), **more)
+
+
+def flag(name: str, help: str) -> Decorator:
+    """An option without a value."""
+    return click.option(name, is_flag=True, help=help)
+
+
+force_option = flag("--force", "Overwrite existing files.")
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
 @contextmanager
@@ -32,53 +48,8 @@ def as_usage(place: str = "") -> Iterator[None]:
         raise UsageError(f"{place}{problem}" for problem in error.problems) from None
 
 
-normals_option = click.option(
-    "--normals",
-    is_flag=True,
-    help="Let words stand for normals: changing a light is then fast. Lights and eye count as far away.",
-)
-
-
-def with_normals(scene: Scene, normals: bool) -> Scene:
-    """The scene, in which words stand for normals if `normals`.
-
-    Raises UsageError if a scalar colors its surfaces.
-    """
-    if not normals:
-        return scene
-    with as_usage("--normals: "):
-        return scene.replace(words="normals")
-
-
-paper_option = click.option(
-    "--paper",
-    is_flag=True,
-    help="Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
-    " maximum, no smooth edges.",
-)
-
-
-hold_option = click.option(
-    "--hold-exposure",
-    is_flag=True,
-    help="Hold the exposure that SCENE has without other options, so that less light is darker.",
-)
-
-
-def with_held_exposure(scene: Scene, picture: Picture) -> Scene:
-    """The scene with the exposure that its picture has."""
-    from autocolor.images import display_image
-    from autocolor.mapping.intensity import held_exposure, stage_surfaces
-
-    mapped = display_image(scene, picture).mapped
-    return scene.replace(exposure=held_exposure(mapped, scene.scaling, scene.exposure, stage_surfaces(scene)))
-
-
-paints_option = click.option(
-    "--paints",
-    type=click.Path(),
-    metavar="FILE",
-    help="Offer the named paints of a .gpl or .csv file beside the swatches of color mixing.",
+paints_option = option(
+    "--paints", "FILE", "Offer the named paints of a .gpl or .csv file beside the swatches of color mixing."
 )
 
 
@@ -95,31 +66,13 @@ def bringing_paints(path: str | None) -> Callable[[Viewer], object]:
     return lambda viewer: viewer.bring_paints(paints, name)
 
 
-def _size(_context: click.Context, _parameter: click.Parameter, text: str) -> tuple[int, int]:
-    from autocolor.images import size_of
-
-    try:
-        return size_of(text)
-    except UsageError as error:
-        raise click.BadParameter(str(error)) from None
-
-
-size_option = click.option(
-    "--size",
-    metavar="WIDTHxHEIGHT",
-    default="640x480",
-    show_default=True,
-    callback=_size,
-    help="Width and height of the picture, up to 4096x4096, as on the largest display.",
-)
-
-
-smooth_option = click.option(
-    "--smooth",
-    type=click.IntRange(1, 4),
-    metavar="1-4",
-    help="Smooth edges: each pixel is the mean light of 1, 4, 9 or 16. 1 is the picture of a display."
-    " Default: 2, and 1 for more than 10 million pixels.",
+recover_option = option(
+    "--recover",
+    "[SESSION]",
+    "Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
+    str,
+    is_flag=False,
+    flag_value="newest",
 )
 
 
@@ -131,33 +84,36 @@ def _allow(context: click.Context, _: click.Parameter, limit: float | None) -> N
         context.find_root().with_resource(allowing(limit))
 
 
-limit_option = click.option(
+limit_option = option(
     "--limit",
-    type=float,
-    metavar="FACTOR",
+    "FACTOR",
+    "Factor for the memory that files and pictures may take, such as 2 for twice as much.",
+    float,
     expose_value=False,
     callback=_allow,
-    help="Factor for the memory that files and pictures may take, such as 2 for twice as much.",
 )
 """`--limit` of the commands that read files."""
 
 VERBOSITY: Final = "autocolor.verbosity"
-"""The key of a click context for the number of `-v`."""
-
-PRINTER: Final = "autocolor.printer"
-"""The key of a click context whose log is printed."""
+"""The key of a click context for the number of `-v`; it is there if the log is printed."""
 
 
-def print_log(context: click.Context) -> None:
-    """Print log records on stderr until the command ends: warnings, and what `-v` asks for."""
+def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
+    """Print log records on stderr until the command ends: warnings, and what `-v` asks for.
+
+    `-v` may be given before the command and after it.
+    """
+    is_before_command = context.parent is None
+    if context.resilient_parsing or (is_before_command and not count):
+        return
     import logging
 
     logger = logging.getLogger("autocolor")
-    verbosity = context.meta.get(VERBOSITY, 0)
+    is_printed = VERBOSITY in context.meta
+    verbosity = context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
     logger.setLevel((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbosity, 2)])
-    if PRINTER in context.meta:
+    if is_printed:
         return
-    context.meta[PRINTER] = True
 
     class Printer(logging.Handler):
         """Prints records on stderr, like all messages of a command."""
@@ -175,17 +131,11 @@ def print_log(context: click.Context) -> None:
     context.find_root().call_on_close(stop)
 
 
-def _listen(context: click.Context, _: click.Parameter, count: int) -> None:
-    """Print log records until the command ends, if `-v` was given before the command or after it."""
-    if count and not context.resilient_parsing:
-        context.meta[VERBOSITY] = context.meta.get(VERBOSITY, 0) + count
-        print_log(context)
-
-
 verbose_option = click.option(
     "-v",
     "--verbose",
     count=True,
+    show_default=False,
     expose_value=False,
     is_eager=True,
     callback=_listen,

@@ -8,9 +8,9 @@ from typing import Final
 import click
 
 from autocolor.commands.completion import complete_surfaces
+from autocolor.commands.options import force_option, option
 from autocolor.commands.outputs import tell_written
-from autocolor.commands.scenes import SceneSource, scene_options, set_option
-from autocolor.commands.sweep import scene_in, start_of
+from autocolor.commands.scenes import SceneSource, scene_in, scene_options, start_of
 
 EXAMPLES: Final = """\b
 Examples:
@@ -22,26 +22,15 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options("settings")
 @click.argument("surface", shell_complete=complete_surfaces)
-@set_option
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    metavar="FILE",
-    help="File to write: a GIMP palette (.gpl) or a table (.csv). Default: SCENE-SURFACE.gpl.",
+@option(
+    "-o --output",
+    "FILE",
+    "File to write: a GIMP palette (.gpl) or a table (.csv). Default: SCENE-SURFACE.gpl.",
 )
-@click.option("--force", is_flag=True, help="Overwrite an existing file.")
-@click.pass_context
-def palette(
-    context: click.Context,
-    source: SceneSource,
-    surface: str,
-    settings: tuple[str, ...],
-    output: str | None,
-    force: bool,
-) -> None:
+@force_option
+def palette(source: SceneSource, surface: str, output: str | None, force: bool) -> int:
     """Write the lookup table entries of SURFACE to a palette file, from its lowest level up.
 
     SCENE may be a picture file, which needs no rendering. Any other scene is rendered in the size of the
@@ -51,17 +40,17 @@ def palette(
     from autocolor.files.paths import file_stem
     from autocolor.files.writing import refuse_output
     from autocolor.images import display_image
-    from autocolor.rendering import render
 
     if output is None:
         output = f"{file_stem(Path(source.path).stem)}-{file_stem(surface)}.gpl"
     check_palette_path(Path(output))
     refuse_output(output, overwrite=force)
-    start, code = start_of(source, settings, (640, 480))
+    source = source._replace(smooth=1)
+    start, code = start_of(source)
     scene = scene_in(start)
     # A wrong name is refused before the picture is rendered.
     scene.surface(surface)
-    picture = start.picture if isinstance(start, tuple) else render(scene)
+    picture = start.picture if isinstance(start, tuple) else source.rendered(scene)
     write_palette(output, display_image(scene, picture).entries_of(surface), overwrite=force)
     tell_written(output)
-    context.exit(code)
+    return code

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
-from autocolor.commands.options import as_usage, limit_option, verbose_option
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_image
+from autocolor.commands.completion import complete_colors, complete_surfaces
+from autocolor.commands.options import force_option, limit_option, option, verbose_option
+from autocolor.commands.outputs import refuse_outputs, tell_written
 from autocolor.commands.scenes import set_option
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from autocolor.checks import Color
-    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:
@@ -30,75 +28,58 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("picture", type=click.Path(), shell_complete=complete_pictures)
+@click.argument("picture", type=click.Path())
 @click.argument("surface", required=False, shell_complete=complete_surfaces)
-@click.option(
-    "--object",
-    "--object-color",
-    "object_color",
-    metavar="COLOR",
+@option(
+    "--object --object-color object_color",
+    "COLOR",
+    'Object color: "#rrggbb", or a name.',
+    str,
     shell_complete=complete_colors,
-    help='Object color: "#rrggbb", or a name.',
 )
-@click.option(
-    "--source",
-    "--light-color",
-    "light_color",
-    metavar="COLOR",
+@option(
+    "--source --light-color light_color",
+    "COLOR",
+    'Light source color: "#rrggbb", or a name.',
+    str,
     shell_complete=complete_colors,
-    help='Light source color: "#rrggbb", or a name.',
 )
-@click.option(
-    "--blend",
-    type=float,
-    metavar="FRACTION",
-    help="Level above which the light color blends in, 0 to 1; 1 for no blending.",
+@option(
+    "--blend", "FRACTION", "Level above which the light color blends in, 0 to 1; 1 for no blending.", float
 )
-@click.option(
-    "--percentage",
-    type=float,
-    metavar="PERCENT",
-    help="Share of the light color at the highest level, 0 to 100.",
+@option(
+    "--percentage light_percentage",
+    "PERCENT",
+    "Share of the light color at the highest level, 0 to 100.",
+    float,
 )
-@click.option(
+@option(
     "--ramp",
-    metavar="COLORS",
-    help="Colors at equal distances from the lowest level to the highest, such as #200,#f60,#fff; instead of"
+    "COLORS",
+    "Colors at equal distances from the lowest level to the highest, such as #200,#f60,#fff; instead of"
     " the two colors and their blend.",
+    str,
 )
-@click.option(
+@option(
     "--palette",
-    type=click.Path(),
-    metavar="FILE",
-    help="Take the colors of a .gpl or .csv file as the ramp, such as a file of `autocolor palette`.",
+    "FILE",
+    "Take the colors of a .gpl or .csv file as the ramp, such as a file of `autocolor palette`.",
 )
 @set_option
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(),
-    metavar="PNG",
-    help="PNG file to write. Default, without --save: PICTURE-SURFACE.png.",
-)
-@click.option(
-    "--save", type=click.Path(), metavar="PICTURE.npz", help="Save the picture with the new colors."
-)
-@click.option("--force", is_flag=True, help="Overwrite existing files.")
+@option("-o --output", "PNG", "PNG file to write. Default, without --save: PICTURE-SURFACE.png.")
+@option("--save", "PICTURE.npz", "Save the picture with the new colors.")
+@force_option
 @limit_option
 @verbose_option
 def recolor(
     picture: str,
     surface: str | None,
-    object_color: str | None,
-    light_color: str | None,
-    blend: float | None,
-    percentage: float | None,
-    ramp: str | None,
     palette: str | None,
     settings: tuple[str, ...],
     output: str | None,
     save: str | None,
     force: bool,
+    **colors: Any,
 ) -> None:
     """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again.
 
@@ -107,32 +88,25 @@ def recolor(
     --set changes any field that needs no rendering: paints, the mapping, and the color scale, limits and
     bands of a scalar.
     """
-    changes: dict[str, Any] = {
-        "object_color": object_color,
-        "light_color": light_color,
-        "blend": blend,
-        "light_percentage": percentage,
-        "ramp": ramp,
-    }
-    given = {name: value for name, value in changes.items() if value is not None}
+    from autocolor.commands.settings import recolored
+    from autocolor.files.paths import file_stem
+    from autocolor.files.picture_file import read_picture, write_picture
+    from autocolor.images import save_image
+    from autocolor.logs import logger_of, timed
+
+    given = {name: value for name, value in colors.items() if value is not None}
     if surface is None and (given or palette is not None or not settings):
         raise UsageError(
             "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE"
             " body --object navy"
         )
     if output is None and save is None:
-        from autocolor.files.paths import file_stem
-
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
-    refuse_outputs(output, save, force)
+    refuse_outputs({"-o": output, "--save": save}, force)
     if palette is not None:
         if given:
             raise UsageError("--palette gives all colors of a surface; leave the other options of colors out")
         given["ramp"] = ramp_of_file(palette)
-
-    from autocolor.files.picture_file import read_picture, write_picture
-    from autocolor.logs import logger_of, timed
-
     logger = logger_of(__name__)
     with timed(logger, f"read {picture}"):
         saved = read_picture(picture)
@@ -142,7 +116,7 @@ def recolor(
         write_picture(save, scene, saved.picture, overwrite=force)
     if output is not None:
         with timed(logger, "image written"):
-            write_image(output, scene, saved.picture, force)
+            save_image(output, scene, saved.picture, overwrite=force)
     tell_written(output, save)
 
 
@@ -157,30 +131,3 @@ def ramp_of_file(path: str) -> tuple[Color, ...]:
         rule = f"a ramp must have 2 to {MOST_RAMP_COLORS:,} colors"
         raise InputError(f"{Path(path).name}: {rule}, not {len(colors):,}; {advice}")
     return colors
-
-
-def recolored(
-    scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
-) -> Scene:
-    """The scene with settings and other colors of a surface.
-
-    Ramps and colors that are replaced are listed on stderr, and a recoloring that no picture shows. Raises
-    UsageError if a setting needs a rendering.
-    """
-    from autocolor.commands.settings import tell_unset, with_settings
-    from autocolor.scene.columns import Tier
-    from autocolor.scene.scene import costs_at_least, unseen_recoloring
-    from ramtek_emu.command_line import tell
-
-    edited = with_settings(scene, settings)
-    if costs_at_least(scene, edited, Tier.MIX):
-        raise UsageError(
-            "--set: a setting of a picture must need no rendering, such as colors, the mapping, or limits and"
-            " bands of a scalar; use it with `autocolor render`"
-        )
-    with as_usage():
-        painted = edited if surface is None else edited.with_paint(surface, **colors)
-    tell_unset(edited, painted)
-    if surface is not None and (sentence := unseen_recoloring(edited, painted, surface)):
-        tell(f"autocolor: {sentence}")
-    return painted

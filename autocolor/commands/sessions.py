@@ -14,15 +14,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.errors import AutocolorError, InputError, MissingInputError, UsageError
-from autocolor.journal.autosave import (
-    OLD_SCRIPT,
-    Autosave,
-    forget,
-    journal_in,
-    left_sessions,
-    refuse_links,
-    written_at,
-)
+from autocolor.journal.autosave import JOURNAL, Autosave, forget, left_sessions, refuse_links, written_at
 from autocolor.journal.journal import read_journal
 from autocolor.screens.viewer import Viewer
 from ramtek_emu.command_line import tell
@@ -32,11 +24,6 @@ if TYPE_CHECKING:
 
 NEWEST: Final = "newest"
 """The choice of the newest session that can be read."""
-
-OLD: Final = (
-    "the session was left by an older version of autocolor, and cannot be recovered; `autocolor view"
-    " --forget` removes it"
-)
 
 
 @contextmanager
@@ -126,12 +113,9 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
 
 
 def _session_in(folder: Path) -> JournalSession:
-    """The session in a folder. Raises InputError if it is invalid or from an older version."""
+    """The session in a folder. Raises InputError if it is invalid."""
     refuse_links(folder)
-    journal = journal_in(folder)
-    if journal.name == OLD_SCRIPT:
-        raise InputError(OLD)
-    return read_journal(journal)
+    return read_journal(folder / JOURNAL)
 
 
 def _folder_named(name: str) -> Path:

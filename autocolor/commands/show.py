@@ -4,29 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
 
 from autocolor.commands.demo import PLACES
-from autocolor.commands.options import bringing_paints, paints_option
-from autocolor.commands.scenes import (
-    SceneSource,
-    created_again,
-    ended,
-    read,
-    scene_options,
-    set_option,
-)
+from autocolor.commands.options import bringing_paints, flag, option, paints_option, recover_option
+from autocolor.commands.scenes import SceneSource, ended, scene_options, session_of
 from autocolor.errors import UnavailableError, UsageError
 from ramtek_emu.command_line import tell
 
 if TYPE_CHECKING:
     from autocolor.arrays import Bytes
     from autocolor.journal.history import History
-    from autocolor.journal.places import Source
     from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import TcpPort, UnixPort
@@ -39,55 +30,37 @@ Examples:
   autocolor show --recover --to tcp://127.0.0.1:9300
 """
 
-
 BUTTONS: Final = "the right edge brings the menu; ENTER (left button) picks, TRACK (right button) drags"
 """The first message on the display. In the window of `ramtek serve`, the mouse is the joystick unit."""
-
 
 TIMEOUT: Final = 30.0
 """The longest wait for the display, in seconds, unless the user gives another."""
 
-timeout_option = click.option(
+timeout_option = option(
     "--timeout",
-    type=click.FloatRange(0.1, 86400),
+    "SECONDS",
+    "Longest wait for the display. A slow line needs more.",
+    click.FloatRange(0.1, 86400),
     default=TIMEOUT,
-    show_default=True,
-    metavar="SECONDS",
-    help="Longest wait for the display. A slow line needs more.",
 )
 
 
 @click.command(epilog=EXAMPLES)
-@partial(scene_options, required=False)
-@set_option
-@click.option(
-    "--to",
-    "address",
+@scene_options("settings", required=False)
+@option(
+    "--to address",
+    "tcp://HOST:PORT",
+    "Address of the display, or the path of its Unix socket.",
+    str,
     required=True,
-    metavar="tcp://HOST:PORT",
-    help="Address of the display, or the path of its Unix socket.",
 )
-@click.option(
-    "--recover",
-    is_flag=False,
-    flag_value="newest",
-    metavar="[SESSION]",
-    help="Instead of SCENE, continue the newest session that was not closed, or the session of a name.",
-)
+@recover_option
 @paints_option
 @timeout_option
-@click.option("--once", is_flag=True, help="Send the picture and exit; the display keeps showing it.")
-@click.pass_context
+@flag("--once", "Send the picture and exit; the display keeps showing it.")
 def show(
-    context: click.Context,
-    source: SceneSource | None,
-    settings: tuple[str, ...],
-    address: str,
-    recover: str | None,
-    paints: str | None,
-    timeout: float,
-    once: bool,
-) -> None:
+    source: SceneSource, address: str, recover: str | None, paints: str | None, timeout: float, once: bool
+) -> int:
     """Show SCENE on another display, such as `ramtek serve`, and follow its joystick.
 
     All functions of `view` are available by pointing: ENTER picks, TRACK drags, and the right edge opens the
@@ -96,9 +69,9 @@ def show(
     Ctrl+C.
     """
     refuse_address(address)
-    if (source is None) == (recover is None):
+    if (source.scene is None) == (recover is None):
         raise UsageError("show must have either SCENE or --recover; name a scene")
-    if recover is not None and (settings or once):
+    if recover is not None and (source.settings or once):
         raise UsageError("--set and --once are for SCENE, not for sessions; leave them out")
     if once and paints is not None:
         raise UsageError("--paints is for an interactive session, not for --once; leave one of them out")
@@ -107,32 +80,19 @@ def show(
         from autocolor.commands.sessions import chosen_session
 
         left, session = chosen_session(recover)
-        session_elsewhere(session.history, address, folder_of(session.source), left, bring, timeout)
-    elif source is not None:
-        from autocolor.commands.settings import with_settings
-        from autocolor.journal.history import History
-        from autocolor.journal.places import Source, place_of
-
-        origin = Source(source.path, source.up, source.surfaces, source.scale)
-        place = place_of(origin)
-        tell(f"reading {source.path}")
-        report = read(source)
-        scene = created_again(report, with_settings(report.scene, settings))
-        if once:
-            show_once(scene, address, timeout)
-        else:
-            history = History(report.scene, place)
-            if scene is not report.scene:
-                history.take(scene)
-            session_elsewhere(history, address, folder_of(origin), prepare=bring, timeout=timeout)
-        context.exit(ended(report, source))
+        session_elsewhere(session.history, address, folder_of(session.source.path), left, bring, timeout)
+        return 0
+    tell(f"reading {source.path}")
+    report, history = session_of(source)
+    if once:
+        show_once(history.scene, address, timeout)
+    else:
+        session_elsewhere(history, address, folder_of(source.path), prepare=bring, timeout=timeout)
+    return ended(report, source)
 
 
 def show_once(scene: Scene, address: str, timeout: float = TIMEOUT) -> None:
-    """Send the picture of a scene to the display at an address, and wait until it is complete.
-
-    Raises UnavailableError if no display answers there.
-    """
+    """Send the picture of a scene to a display. Raises UnavailableError if none answers at the address."""
     from autocolor.studio import Studio
 
     with port_to(address, timeout) as port:
@@ -169,9 +129,9 @@ def _without_answer(port: TcpPort | UnixPort, address: str) -> UnavailableError:
     )
 
 
-def folder_of(source: Source) -> Path:
+def folder_of(scene: str) -> Path:
     """The folder of a scene, or the scene's file; for the built-in demo, the current folder."""
-    path = Path(source.path).absolute()
+    path = Path(scene).absolute()
     folder = path if path.is_dir() else path.parent
     return Path.cwd() if folder in PLACES else folder
 
@@ -231,10 +191,9 @@ def refuse_address(address: str) -> None:
     from ramtek_emu import PortError
     from ramtek_emu.host.port import host_and_port
 
-    if _is_path(address):
-        return
     try:
-        host_and_port(address)
+        if not _is_path(address):
+            host_and_port(address)
     except PortError as error:
         raise UsageError(f"--to: {error}, or the path of a Unix socket with a slash in it") from None
 

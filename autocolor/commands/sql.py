@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.options import as_usage
+from autocolor.commands.options import flag
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import AutocolorError, InputError, UsageError
@@ -37,27 +37,18 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options()
 @click.argument("statement", required=False)
-@click.option("--write", is_flag=True, help="Allow INSERT, UPDATE and DELETE, and save SCENE.")
+@flag("--write", "Allow INSERT, UPDATE and DELETE, and save SCENE.")
 @click.option("--csv", "form", flag_value="csv", help="Print rows as CSV.")
 @click.option("--json", "form", flag_value="json", help="Print rows as a JSON list of objects.")
 @click.option(
     "--seconds",
     type=click.FloatRange(0.001, 86400),
     default=30.0,
-    show_default=True,
     help="Longest time of a statement.",
 )
-@click.pass_context
-def sql(
-    context: click.Context,
-    source: SceneSource,
-    statement: str | None,
-    write: bool,
-    form: str | None,
-    seconds: float,
-) -> None:
+def sql(source: SceneSource, statement: str | None, write: bool, form: str | None, seconds: float) -> int:
     """Run SQL on the tables of SCENE: STATEMENT, or else statements from a prompt or stdin.
 
     SCENE is a store (.sqlite) or any other scene. `.schema` at the prompt shows the tables; docs/STORE.md
@@ -92,7 +83,7 @@ def sql(
                 raise UsageError("statements must be text in UTF-8; save them in this encoding") from None
             for each in filter(None, split(text)):
                 run(each)
-    context.exit(0 if report is None else ended(report, source))
+    return 0 if report is None else ended(report, source)
 
 
 def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, statement: str) -> None:
@@ -109,8 +100,7 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str | None, sta
     try:
         count = tables.change(statement)
     except InputError as error:
-        with as_usage():
-            raise InputError(["nothing was changed", *error.problems]) from None
+        raise UsageError(["nothing was changed", *error.problems]) from None
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
     if not is_store(Path(source.path)):
         from autocolor.files.scene_writing import write_scene

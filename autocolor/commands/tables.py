@@ -8,6 +8,7 @@ from typing import Final
 
 import click
 
+from autocolor.commands.options import flag, force_option, json_option
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from ramtek_emu.command_line import tell
@@ -21,18 +22,11 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
-@click.option("--write", is_flag=True, help="Write a scene.toml beside SCENE instead of printing it.")
-@click.option("--force", is_flag=True, help="Overwrite an existing scene.toml.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.pass_context
-def tables(
-    context: click.Context,
-    source: SceneSource,
-    write: bool,
-    force: bool,
-    as_json: bool,
-) -> None:
+@scene_options()
+@flag("--write", "Write a scene.toml beside SCENE instead of printing it.")
+@force_option
+@json_option
+def tables(source: SceneSource, write: bool, force: bool, as_json: bool) -> int:
     """Print a complete scene file of SCENE, with the parts, surfaces, lights and view created for it."""
     report = read(source)
     if write:
@@ -52,4 +46,4 @@ def tables(
 
         # The scene of a picture file has no mesh files.
         click.echo(scene_text(report.scene, report.mesh_files), nl=False)
-    context.exit(ended(report, source))
+    return ended(report, source)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.options import verbose_option
+from autocolor.commands.options import flag, option, verbose_option
 from autocolor.commands.show import refuse_address, session_elsewhere, timeout_option
 
 if TYPE_CHECKING:
@@ -20,23 +21,21 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@click.option(
-    "--to",
-    "address",
-    metavar="tcp://HOST:PORT",
-    help="Address of another display, or the path of its Unix socket, to use instead of a window.",
+@option(
+    "--to address",
+    "tcp://HOST:PORT",
+    "Address of another display, or the path of its Unix socket, to use instead of a window.",
+    str,
 )
 @timeout_option
-@click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
-@click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
+@flag("--full-screen", "Open the window in full screen.")
+@flag("--fit", "Scale the picture to fill the window; pixels may become uneven.")
 @verbose_option
 def tutorial(address: str | None, timeout: float, full_screen: bool, fit: bool) -> None:
     """Light and paint a car step by step. A panel shows the next step, and goes on when you have done it.
 
     Files are saved in the current folder.
     """
-    from pathlib import Path
-
     from autocolor.commands.demo import demo_session
     from autocolor.commands.view import show_demo
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.checks import Color
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
 from autocolor.errors import InputError
 from ramtek_emu.command_line import tell
@@ -26,11 +25,10 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@scene_options()
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with all rows.")
 @click.option("--show", "shows", is_flag=True, help="Show the faults of the mesh in color, in a window.")
-@click.pass_context
-def validate(context: click.Context, source: SceneSource, as_json: bool, shows: bool) -> None:
+def validate(source: SceneSource, as_json: bool, shows: bool) -> int:
     """List every problem and every repair of SCENE, and every fault of its mesh.
 
     A scene with a problem cannot be rendered: the exit code is 65. A scene with faults or repairs can; with
@@ -58,7 +56,7 @@ def validate(context: click.Context, source: SceneSource, as_json: bool, shows: 
 
         # The colored scene has no file to save to.
         show(History(fault_scene(report.scene, faults)))
-    context.exit(REPAIRED if source.strict and faults else ended(report, source))
+    return REPAIRED if source.strict and faults else ended(report, source)
 
 
 FIRST_ROWS: Final = 5
@@ -100,6 +98,12 @@ def _hole_line(hole: Hole) -> str:
 
 def fault_values(faults: Sequence[Fault]) -> list[dict[str, Any]]:
     """The faults as values that JSON can hold, with at most MOST_ROWS rows of a kind."""
+
+    def hole_values(hole: Hole) -> dict[str, Any]:
+        values = {**vars(hole), "node": hole.node + 1, "closed": hole.is_closed}
+        del values["is_closed"]
+        return values
+
     return [
         {
             "kind": fault.kind,
@@ -108,37 +112,16 @@ def fault_values(faults: Sequence[Fault]) -> list[dict[str, Any]]:
             "count": len(fault.rows),
             "rows": (fault.rows[:MOST_ROWS] + 1).tolist(),
             "polygons": (fault.polygons[:MOST_ROWS] + 1).tolist(),
-            **({"loops": [_hole_values(hole) for hole in fault.holes[:MOST_ROWS]]} if fault.holes else {}),
+            **({"loops": [hole_values(hole) for hole in fault.holes[:MOST_ROWS]]} if fault.holes else {}),
         }
         for fault in faults
     ]
 
 
-def _hole_values(hole: Hole) -> dict[str, Any]:
-    return {
-        "edges": hole.edges,
-        "length": hole.length,
-        "center": list(hole.center),
-        "node": hole.node + 1,
-        "closed": hole.is_closed,
-    }
-
-
-COLORS: Final[tuple[Color, ...]] = (
-    (86, 180, 233),
-    (120, 120, 220),
-    (90, 90, 90),
-    (250, 220, 90),
-    (240, 170, 60),
-    (230, 110, 30),
-    (0, 170, 110),
-    (200, 110, 190),
-    (150, 40, 160),
-    (220, 20, 40),
-)
+COLORS: Final = "#56b4e9,#7878dc,#5a5a5a,#fadc5a,#f0aa3c,#e66e1e,#00aa6e,#c86ebe,#9628a0,#dc1428"
 """The colors of the kinds of faults, in the order of their numbers; graver faults are redder and darker."""
 
-WITHOUT_FAULT: Final[Color] = (200, 200, 200)
+WITHOUT_FAULT: Final = "#c8c8c8"
 
 SURFACE: Final = "mesh"
 """The surface of all parts in a picture of faults, so that the levels suffice for all kinds."""
@@ -159,10 +142,5 @@ def fault_scene(scene: Scene, faults: Sequence[Fault]) -> Scene:
         parts=tuple(part.replace(surface=SURFACE, stage=False) for part in scene.parts),
         surfaces=(Surface(SURFACE, Reflectance(0.8, 0.0)),),
         exposure=AUTO,
-        scalar=Scalar(
-            name=FAULT,
-            limits=(-0.5, count + 0.5),
-            scale=(WITHOUT_FAULT, *COLORS),
-            bands=count + 1,
-        ),
+        scalar=Scalar(FAULT, (-0.5, count + 0.5), f"{WITHOUT_FAULT},{COLORS}", bands=count + 1),
     )

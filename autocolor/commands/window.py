@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
-from contextlib import nullcontext, suppress
+from concurrent.futures import Future
+from contextlib import suppress
 from contextvars import copy_context
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Final, TypeVar
@@ -143,16 +144,13 @@ class Waiting:
         An error of the function closes the window and is raised. If the user closes the window, the command
         ends; the thread is abandoned, and ends with the process.
         """
-        context = click.get_current_context(silent=True)
-        results: list[Result] = []
-        errors: list[BaseException] = []
+        done: Future[Result] = Future()
 
         def run() -> None:
             try:
-                with nullcontext() if context is None else context.scope(cleanup=False):
-                    results.append(work())
+                done.set_result(work())
             except BaseException as error:
-                errors.append(error)
+                done.set_exception(error)
 
         thread = threading.Thread(target=copy_context().run, args=(run,), daemon=True)
         thread.start()
@@ -160,12 +158,10 @@ class Waiting:
         try:
             if thread.is_alive():
                 self._wait(f"{doing} {self._name} ...", thread)
-            if errors:
-                raise errors[0]
+            return done.result()
         except BaseException:
             self.monitor.close()
             raise
-        return results[0]
 
     def _wait(self, message: str, thread: threading.Thread) -> None:
         """Show a message until the thread ends. Without a screen, wait for its errors, which come first."""

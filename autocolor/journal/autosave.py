@@ -4,8 +4,6 @@ Each session has its own folder there, with the journal, a lock, the meshes that
 scene if no file has it. However the program ends, its lock ends with it. A session whose lock is free did not
 end in order: it was left, and can be recovered or forgotten. Of a folder or file that is a link, nothing is
 locked, written or removed but the link itself.
-
-Versions before the journal left a Python script. It is listed and can be forgotten, but not recovered.
 """
 
 from __future__ import annotations
@@ -28,7 +26,6 @@ from autocolor.journal.places import Source
 
 SESSIONS: Final = "sessions"
 JOURNAL: Final = "session.jsonl"
-OLD_SCRIPT: Final = "session.py"
 LOCK: Final = "lock"
 FIRST_SCENE: Final = "scene"
 
@@ -112,9 +109,8 @@ class Autosave:
 
 def _remove(folder: Path, lock: int | None) -> None:
     """Remove the folder of a session, and release its lock; links in it are removed alone."""
-    for name in (JOURNAL, OLD_SCRIPT):
-        with suppress(OSError):
-            os.unlink(folder / name)
+    with suppress(OSError):
+        os.unlink(folder / JOURNAL)
     if lock is not None:
         os.close(lock)
     shutil.rmtree(folder, ignore_errors=True)
@@ -151,16 +147,9 @@ def left_sessions() -> list[Path]:
     return sorted(left, key=written_at, reverse=True)
 
 
-def journal_in(folder: Path) -> Path:
-    """The journal in the folder of a session, or the script that an older version left there."""
-    script = folder / OLD_SCRIPT
-    is_old = os.path.isfile(script) and not os.path.isfile(folder / JOURNAL)
-    return script if is_old else folder / JOURNAL
-
-
 def written_at(folder: Path) -> float:
     """The time of the last write to the journal of a session, or to its folder without a journal."""
-    for path in (journal_in(folder), folder):
+    for path in (folder / JOURNAL, folder):
         with suppress(OSError):
             return os.lstat(path).st_mtime
     return 0.0
@@ -168,7 +157,7 @@ def written_at(folder: Path) -> float:
 
 def refuse_links(folder: Path) -> None:
     """Raise InputError if the folder, the journal or the lock of a session is a link."""
-    for path in (folder, journal_in(folder), folder / LOCK):
+    for path in (folder, folder / JOURNAL, folder / LOCK):
         if os.path.islink(path):
             raise InputError(
                 f"{path.name}: it must not be a link; `autocolor view --forget` removes the session"

@@ -15,14 +15,15 @@ because `follows` = "eye" means the eye. Departs: the paper's lights are all fix
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from typing import Any, Final, NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from graphlib import CycleError, TopologicalSorter
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Floats
-from autocolor.checks import Vector
-from autocolor.scene.columns import REFUSED, Problem, Row, fields_of, with_values
+from autocolor.checks import Vector, brief
+from autocolor.scene.columns import Problem, Row, fields_of, with_values
 from autocolor.scene.kinds import VectorKind
 from autocolor.scene.lights import EYE, HalfSpace, Light
 from autocolor.scene.view import View
@@ -36,9 +37,6 @@ NEAREST_AIM: Final = 1e-9
 LEAST_COORDINATE: Final = 1e-30
 """The least size of coordinates for NEAREST_AIM, so that a fraction of it is never 0."""
 
-MOST_NAMES: Final = 8
-"""Limit: the names of a circle in a message."""
-
 
 class Frame(NamedTuple):
     """A frame of coordinates, which turns and moves with the eye or a light: its origin and its three axes.
@@ -49,10 +47,6 @@ class Frame(NamedTuple):
     origin: Floats
     axes: Floats
 
-    def point_to_world(self, point: Vector) -> Vector:
-        """The world coordinates of a point of the frame."""
-        return _vector(self.origin + np.array(point) @ self.axes)
-
     def point_from_world(self, point: Vector) -> Vector:
         """The coordinates in the frame of a point of the world."""
         return _vector(self.axes @ (np.array(point) - self.origin))
@@ -61,17 +55,15 @@ class Frame(NamedTuple):
         """The direction in world axes, given in the axes of the frame."""
         return _vector(np.array(direction) @ self.axes)
 
-    def direction_from_world(self, direction: Vector) -> Vector:
-        """The direction in the axes of the frame, given in world axes."""
-        return _vector(self.axes @ np.array(direction))
-
     def to_world(self, row: Row) -> dict[str, Vector]:
         """The points and directions of a row of the frame in the world, by column, without None values."""
-        return moved_vectors(row, self.point_to_world, self.direction_to_world)
+        return moved_vectors(
+            row, lambda each: _vector(self.origin + np.array(each) @ self.axes), self.direction_to_world
+        )
 
     def from_world(self, row: Row) -> dict[str, Vector]:
         """The points and directions of a row of the world in the frame, by column, without None values."""
-        return moved_vectors(row, self.point_from_world, self.direction_from_world)
+        return moved_vectors(row, self.point_from_world, lambda each: _vector(self.axes @ np.array(each)))
 
 
 def moved_vectors(
@@ -158,30 +150,17 @@ def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
         return lights
     by_name = {light.name: light for light in lights}
     world: dict[str, Light] = {}
-    for light in lights:
-        # Walk to a light whose frame is computed, and convert the lights on the way back.
-        chain = [light]
-        while chain[-1].follows not in (None, EYE) and chain[-1].follows not in world:
-            chain.append(by_name[str(chain[-1].follows)])
-        for each in reversed(chain):
-            world[each.name] = in_world(each, frame_of(each, world, view))
+    # A light comes after the light that it follows.
+    for name in TopologicalSorter(_followed(lights)).static_order():
+        light = by_name[name]
+        world[name] = in_world(light, frame_of(light, world, view))
     return tuple(world[light.name] for light in lights)
 
 
-def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[str, Any]:
-    """Changes of a light whose points and directions are in world coordinates, as changes in a frame.
-
-    A value that is no vector is left unchanged: the row refuses it.
-    """
-    turned = dict(changes)
-    if frame is not None:
-        columns = vector_columns(Light)
-        for name in columns.keys() & changes.keys():
-            vector: Any = VectorKind().validated(changes[name], (name,), [])
-            if vector is not REFUSED:
-                turn = frame.direction_from_world if columns[name] else frame.point_from_world
-                turned[name] = turn(vector)
-    return turned
+def _followed(lights: Sequence[Light]) -> dict[str, list[str]]:
+    """The lights by name, each with the light of the table that it follows, or with none."""
+    names = {light.name for light in lights} - {EYE}
+    return {light.name: [str(light.follows)] if light.follows in names else [] for light in lights}
 
 
 def detached(half_space: HalfSpace, light: Light) -> HalfSpace:
@@ -205,66 +184,33 @@ def followers_of(name: str, lights: Sequence[Light]) -> list[str]:
 
 def names_to_follow(light: Light, lights: Sequence[Light]) -> list[str]:
     """The names of the other lights that a light can follow: they have an aim and do not follow the light."""
-    followers: dict[str | None, list[str]] = {}
-    for each in lights:
-        if each.follows != EYE:
-            followers.setdefault(each.follows, []).append(each.name)
-    # The light and all lights that follow it, directly or not.
-    following = [light.name]
-    for name in following:
-        following.extend(followers.pop(name, ()))
-    excluded = {*following, EYE}
+    followed, excluded = _followed(lights), {light.name, EYE}
+    for name in TopologicalSorter(followed).static_order():
+        if excluded.intersection(followed[name]):
+            excluded.add(name)
     return [each.name for each in lights if each.aim is not None and each.name not in excluded]
 
 
 def following_problems(lights: Sequence[Light]) -> Iterator[Problem]:
-    """A problem for each circle of lights that follow each other, and for each light followed without an aim.
+    """A problem for a circle of lights that follow each other, and for each light followed without an aim.
 
     The check of references finds names that are not in the table.
     """
-    by_name = {light.name: light for light in lights}
-    clear: set[str] = set()
-    for light in lights:
-        if light.follows in (None, EYE) or str(light.follows) not in by_name:
-            continue
-        path = _path(light, by_name, clear)
-        circle, followed = path[path.index(path[-1]) :], by_name[str(light.follows)]
-        if len(circle) > 1:
-            rule = f"must not lead back to it, as {_in_words(circle)} does; change one of them"
-            yield Problem((), f"light {circle[0]!r}: follows {rule}")
-        elif followed.aim is None:
-            rule = f"must be a light with an aim, not {followed.name!r} without one; give it an aim"
-            yield Problem((), f"light {light.name!r}: follows {rule}")
-        clear.update(path)
-
-
-def _path(light: Light, by_name: Mapping[str, Light], clear: Container[str] = ()) -> list[str]:
-    """The names of a light, the light that it follows, and so on.
-
-    The path ends at a light that follows no other light, is `clear`, or is on the path already.
-    """
-    path = {light.name: None}
-    while True:
-        follows = by_name[next(reversed(path))].follows
-        if follows is None or follows == EYE or follows not in by_name:
-            return list(path)
-        if follows in path:
-            return [*path, follows]
-        if follows in clear:
-            return list(path)
-        path[follows] = None
-
-
-def _in_words(path: Sequence[str]) -> str:
-    """A path in words; the middle of a long path is left out.
-
-    >>> _in_words(["key", "fill", "key"])
-    "'key' to 'fill' to 'key'"
-    """
-    names = [repr(name) for name in path]
-    if len(names) > MOST_NAMES:
-        names = [*names[: MOST_NAMES - 2], "...", names[-1]]
-    return " to ".join(names)
+    by_name, followed = {light.name: light for light in lights}, _followed(lights)
+    try:
+        TopologicalSorter(followed).prepare()
+    except CycleError as error:
+        circle = error.args[1][:0:-1]
+        start = circle.index(next(name for name in by_name if name in circle))
+        circle = [*circle[start:], *circle[: start + 1]]
+        path = " to ".join(map(repr, circle))
+        rule = f"must not lead back to it, as {brief(path)} does; change one of them"
+        yield Problem((), f"light {circle[0]!r}: follows {rule}")
+    for name, others in followed.items():
+        for other in others:
+            if by_name[other].aim is None:
+                rule = f"must be a light with an aim, not {other!r} without one; give it an aim"
+                yield Problem((), f"light {name!r}: follows {rule}")
 
 
 def _vector(components: Floats) -> Vector:

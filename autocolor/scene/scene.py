@@ -43,7 +43,6 @@ from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_bounds, object_coordinates
 from autocolor.scene.following import (
     Frame,
-    changes_in_frame,
     followers_of,
     following_problems,
     frame_of,
@@ -283,17 +282,20 @@ class Scene(Row):
         if "follows" in changes:
             followed = self.with_light_following(name, changes.pop("follows"))
             return followed.with_light_in_world(name, **changes)
-        return self.with_light(name, **changes_in_frame(changes, self._frame_of(name)))
+        frame = self._frame_of(name)
+        if frame is None:
+            return self.with_light(name, **changes)
+        moved: dict[str, Any] = frame.from_world(self.light_in_world(name).replace(**changes))
+        return self.with_light(name, **{**changes, **{each: moved[each] for each in moved.keys() & changes}})
 
     def with_light_following(self, name: str, follows: str | None) -> Scene:
         """The scene in which a light follows "eye", another light or nothing, and stays where it is now.
 
         Raises UsageError if no light has that name, InputError if the light cannot follow `follows`.
         """
-        world = self.light_in_world(name)
-        places = {column: vars(world)[column] for column in vector_columns(Light)}
+        world = vars(self.light_in_world(name))
         followed = self.with_light(name, follows=follows)
-        return followed.with_light(name, **changes_in_frame(places, followed._frame_of(name)))
+        return followed.with_light_in_world(name, **{each: world[each] for each in vector_columns(Light)})
 
     def _frame_of(self, name: str) -> Frame | None:
         world = {light.name: light for light in self.lights_in_world}

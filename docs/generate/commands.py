@@ -117,9 +117,10 @@ installed:
 | zsh | `~/.zshrc` | `eval "$(_AUTOCOLOR_COMPLETE=zsh_source autocolor)"` |
 | fish | `~/.config/fish/config.fish` | `_AUTOCOLOR_COMPLETE=fish_source autocolor \\| source` |
 
-For `ramtek` it is `_RAMTEK_COMPLETE`, and `ramtek` at the end. Names and keys are those of the scene or the
-picture that stands on the line before them. A scene that is large or broken completes to nothing.
-After a whole key, bash lists the values alone: `off` and `ordered` after `dither=`.
+For `ramtek` it is `_RAMTEK_COMPLETE`, and `ramtek` at the end. The shell itself completes paths. Names, keys
+and values are those of the scene or the picture that stands on the line before them. A scene that is large or
+broken completes to nothing. bash parts a word at `=`, so it completes no value after a whole key; zsh and
+fish do.
 
 | typed, and Tab | candidates |
 |---|---|
@@ -137,16 +138,12 @@ WITHOUT_SCREEN = ("autocolor view car", "autocolor tutorial", "ramtek")
 LINES = (
     "autocolor re",
     "autocolor t",
-    "autocolor render ",
-    "autocolor render car/",
     "autocolor render car --light ",
     "autocolor render car --set ",
     "autocolor render car --set lights.",
     "autocolor render car --set lights.key.",
     "autocolor render car --set surfaces.body.two",
     "autocolor view car --set dith",
-    "autocolor view car --set background=na",
-    "autocolor recolor ",
     "autocolor recolor car.npz ",
     "autocolor recolor car.npz body --object dark",
     "autocolor render broken.obj --set ",

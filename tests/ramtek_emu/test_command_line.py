@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import errno
-import os
-import shutil
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -21,7 +18,7 @@ from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.command_line import CommandGroup, WholeWords, run_command, tell
+from ramtek_emu.command_line import CommandGroup, run_command, tell
 from ramtek_emu.errors import OutputExistsError, escaped
 
 
@@ -310,55 +307,3 @@ def test_a_command_is_loaded_by_its_name_from_the_module_of_that_name(
     result = CliRunner().invoke(group, [argument])
     assert result.exit_code == code
     assert result.output.endswith(shown)
-
-
-COLORS = ["color=red", "color=dark red", "size=1"]
-
-
-@click.command()
-@click.option(
-    "--set", shell_complete=lambda context, parameter, word: [c for c in COLORS if c.startswith(word)]
-)
-@click.option("--to", type=click.Path())
-@click.argument("name", shell_complete=lambda context, parameter, word: [context.params["set"]])
-def paint(set: str, to: str, name: str) -> None:
-    """Do nothing."""
-
-
-@pytest.mark.parametrize(
-    ("words", "candidates"),
-    [
-        (["--set", "color", "="], ["plain,red", "plain,dark\\ red"]),
-        (["--set", "color", "=", "r"], ["plain,red"]),
-        (["--set", "=", "color", "=", "da"], ["plain,dark\\ red"]),
-        (["--set", "=", "si"], ["plain,size=1"]),
-        # A bash that leaves words whole gets whole candidates.
-        (["--set", "color=d"], ["plain,color=dark\\ red"]),
-        # The next argument.
-        (["--set", "size", "=", "1", ""], ["plain,size=1"]),
-        (["--to", "x\\ y"], ["file,x y"]),
-    ],
-)
-def test_the_last_of_the_words_that_bash_made_of_a_line_is_completed(
-    words: list[str], candidates: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COMP_WORDS", "\n".join(["paint", *words]))
-    monkeypatch.setenv("COMP_CWORD", str(len(words)))
-    assert WholeWords(paint, {}, "paint", "_PAINT_COMPLETE").complete().splitlines() == candidates
-
-
-@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
-def test_bash_takes_the_candidates_without_their_quotes_for_words() -> None:
-    script = WholeWords(paint, {}, "paint", "_PAINT_COMPLETE").source()
-    stub = r"env() { printf 'plain,dark\\ red\nplain,*\n'; }" + "\n"
-    shown = "_paint_completion paint; printf '<%s>' \"${COMPREPLY[@]}\""
-    ran = subprocess.run(
-        ["bash", "--norc", "-c", f"{script}{stub}COMP_WORDS=(paint); COMP_CWORD=1; {shown}"],
-        # A locale that is not installed is a warning of bash.
-        env={**os.environ, "LC_ALL": "C"},
-        check=True,
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert (ran.stdout, ran.stderr) == ("<dark\\ red><*>", "")

@@ -56,19 +56,3 @@ def test_the_loss_of_a_gif_is_printed(folder: Path, run: Run) -> None:
     assert ran.err.splitlines()[0].startswith("2 of 2 frames lost colors, by at most ")
     with Image.open("a.gif") as film:
         assert "loop" not in film.info
-
-
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        ("-o a.webp", 2, "animate must have --vary, --table or --turn; write it as in --turn 360"),
-        ("--vary ambiend=0,1 -o a.gif", 2, "--vary ambiend: there is no field 'ambiend'; did you mean"),
-        ("--turn 9 --fps 60 -o a.gif", 2, ""),
-        ("--table bad.csv -o a.gif", 65, "bad.csv: "),
-    ],
-)
-def test_a_wrong_command_line_is_refused(
-    folder: Path, refused: Refused, line: str, code: int, sentence: str
-) -> None:
-    Path("bad.csv").write_text("time,ambient\n1,0.1\n1,0.2\n")
-    assert refused(f"animate scene {line}", code).startswith(sentence)

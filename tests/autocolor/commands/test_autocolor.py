@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 from autocolor.commands.autocolor import AutocolorGroup
-from autocolor.files.opening import TWO_TABLES
 from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
 from tests.autocolor.commands.test_view import monitors as monitors
 from tests.tables import first
@@ -136,42 +135,6 @@ for command in {["", *AutocolorGroup.table]!r}:
     assert [line for line in ran.err.splitlines() if not line.endswith(" []")] == []
 
 
-def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
-    ran = run("--version")
-    assert (ran.code, ran.err) == (0, "")
-    assert ran.out.strip()
-
-
-@pytest.mark.parametrize(
-    ("line", "sentence"),
-    [
-        ("rendr two.obj", "there is no command 'rendr'; did you mean 'render'?"),
-        ("info n.csv p.csv", f"n.csv p.csv: two tables must be one argument, not two; {TWO_TABLES}"),
-        ("info", "Missing argument 'SCENE'."),
-        ("info two.obj more", "Got unexpected extra argument (more)"),
-    ],
-)
-def test_a_wrong_command_line_is_refused(refused: Refused, line: str, sentence: str) -> None:
-    assert refused(line, 2) == f"Error: {sentence}"
-
-
-def raising(error: BaseException) -> object:
-    def fail(*_: object) -> None:
-        raise error
-
-    return fail
-
-
-def test_a_fault_of_ours_is_said_to_be_one(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autocolor.rendering.render", raising(ZeroDivisionError("of ours")))
-    expected = (
-        "autocolor: a fault of this program, not of yours: ZeroDivisionError: of ours;"
-        " add --debug for the traceback and report it\n"
-    )
-    assert run("info", "two.obj") == (70, "", expected)
-    assert "Traceback" in run("info", "two.obj", "--debug").err
-
-
 # What only a process of its own shows.
 
 AT_AN_IMPORT = """
@@ -195,8 +158,6 @@ main()
         ("autocolor", "click", -2),
         ("autocolor", "numpy", 130),
         pytest.param("autocolor", "autocolor.commands.autocolor", -2, marks=pytest.mark.thorough),
-        pytest.param("autocolor", "ramtek_emu.command_line", -2, marks=pytest.mark.thorough),
-        pytest.param("autocolor", "autocolor.commands.render", 130, marks=pytest.mark.thorough),
         pytest.param("ramtek_emu", "click", -2, marks=pytest.mark.thorough),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 
 from autocolor import read_scene, render
 from autocolor.explanation.text import WIDTH
-from tests.autocolor.commands.conftest import Refused, Run
+from tests.autocolor.commands.conftest import Run
 
 
 def test_a_pixel_is_explained_in_rows_of_a_terminal(folder: Path, run: Run) -> None:
@@ -27,8 +27,3 @@ def test_json_has_the_intensity_of_the_picture_with_its_settings_and_size(folder
     assert facts["ambient"] == 0.5
     assert facts["intensity"] == pytest.approx(float(intensity), rel=1e-5)
     assert sorted(light["name"] for light in facts["lights"]) == ["key", "key.2"]
-
-
-@pytest.mark.parametrize("pixel", ["24 0", "0 32"])
-def test_a_pixel_outside_of_the_picture_is_refused(pixel: str, refused: Refused) -> None:
-    refused(f"explain scene {pixel} --size 32x24", 2)

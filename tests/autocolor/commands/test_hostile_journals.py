@@ -27,11 +27,7 @@ def store(folder: Path) -> Path:
     ("line", "code"),
     [
         ("info small.sqlite", 65),
-        ("validate small.sqlite", 65),
-        ("render small.sqlite -o out.png", 65),
         ("view small.sqlite", 65),
-        ("show small.sqlite --to tcp://127.0.0.1:1", 65),
-        ("tables small.sqlite", 65),
         ("convert small.sqlite out.obj", 65),
         ("convert two.obj small.sqlite --force", 65),
         ("sql small.sqlite", 65),

@@ -5,19 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.commands.options import as_usage
-from autocolor.errors import InputError, MissingInputError, UsageError
 from tests.autocolor.commands.conftest import SMALL, Run
-
-
-def test_every_problem_of_a_value_from_the_command_line_is_told_as_wrong_usage() -> None:
-    with pytest.raises(UsageError) as caught, as_usage("--set: "):
-        raise InputError(["a must be 1, not 2", "b must be 3, not 4"])
-    assert str(caught.value) == "--set: a must be 1, not 2\n--set: b must be 3, not 4"
-    with pytest.raises(ZeroDivisionError), as_usage():
-        raise ZeroDivisionError
-    with pytest.raises(UsageError), as_usage():
-        raise MissingInputError("none of your business")
 
 
 @pytest.mark.parametrize("arguments", [("-v", "render", "two.obj"), ("render", "two.obj", "--verbose")])

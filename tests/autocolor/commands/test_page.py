@@ -67,24 +67,3 @@ def test_a_page_has_lights_and_variants(saved: Path, run: Run) -> None:
         "paints": {"side": {"object_color": "#000080", "blend": 1.0}},
         "lights": {"key": {"intensity": 0.5}},
     }
-
-
-OF_A_SCENE = "--size and --smooth are for a scene, not for a picture file; leave them out"
-
-
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        ("--size 640x480", 2, OF_A_SCENE),
-        ("--vary surfaces.sde.blend=0,1", 2, "--vary surfaces.sde.blend: there is no surface 'sde'"),
-        ("--table views.csv", 65, "views.csv: variant '3': "),
-        ("-o side.png", 2, ""),
-        ("--set view.angle=3", 2, ""),
-        ("--vary lights.key.on=true,false", 2, ""),
-    ],
-)
-def test_what_cannot_be_a_page_is_refused(
-    saved: Path, refused: Refused, line: str, code: int, sentence: str
-) -> None:
-    Path("views.csv").write_text("view.angle\n3\n")
-    assert refused(f"page scene.npz {line}", code).startswith(sentence)

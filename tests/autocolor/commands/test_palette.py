@@ -8,7 +8,7 @@ import pytest
 from autocolor import Studio, read_palette, read_picture, read_scene
 from autocolor.images import display_image
 from ramtek_emu import Ramtek9300
-from tests.autocolor.commands.conftest import Refused, Run
+from tests.autocolor.commands.conftest import Run
 
 
 @pytest.mark.parametrize("suffix", [".gpl", ".csv"])
@@ -29,17 +29,3 @@ def test_the_entries_of_a_scene_are_those_of_the_display(folder: Path, run: Run)
     first, levels = studio.level_ranges["front.low"]
     entries = display.entries[first : first + levels]
     assert np.array_equal(read_palette("scene-front.low.gpl").colors, entries)
-
-
-@pytest.mark.parametrize(
-    ("line", "sentence"),
-    [
-        ("spare", "surface 'spare' has no levels, because no part has it; choose 'front.low' or 'side'"),
-        ("sde", ""),
-        ("side -o side.png", ""),
-    ],
-)
-def test_what_cannot_be_written_is_refused(folder: Path, refused: Refused, line: str, sentence: str) -> None:
-    scene = folder / "scene" / "scene.toml"
-    scene.write_text(f"{scene.read_text()}[surfaces.spare]\n")
-    assert refused(f"palette scene {line}", 2).startswith(sentence)

@@ -4,10 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import Scene, read_palette, render, write_palette, write_picture
-from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
-from tests.small import wall_scene
-from tests.tables import first
+from autocolor import write_palette
+from tests.autocolor.commands.conftest import SMALL, Run, is_same
 
 SAME = "autocolor: surface 'side' has these colors already; the recoloring changes nothing\n"
 
@@ -31,12 +29,14 @@ def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, r
             ["object_color=#123456", "light_color=#ffe9c0", "blend=0.25", "light_percentage=50"],
         ),
         ("--ramp #200,#f60,#fff", ["ramp=#200,#f60,#fff"]),
+        ("--palette hot.gpl", ["ramp=#200,#f60,#fff"]),
         ("--set mapping=gamma --object navy", ["object_color=navy", "blend=0.6"]),
     ],
 )
 def test_a_recolored_picture_is_the_one_rendered_in_the_new_colors(
     saved: Path, run: Run, options: str, fields: list[str]
 ) -> None:
+    write_palette("hot.gpl", ["#200", "#f60", "#fff"])
     (saved.parent / "scene" / "two.obj").rename("two")
     assert run("recolor", "scene.npz", "side", *options.split(), "-o", "one.png").code == 0
     Path("two").rename(saved.parent / "scene" / "two.obj")
@@ -51,9 +51,9 @@ def test_the_scale_limits_and_bands_of_a_scalar_are_set_in_a_saved_picture(saved
     shown = settings("scalar.name=z")
     assert run("render", "scene", *SMALL, *shown, "--save", "z.npz").code == 0
     others = settings("scalar.scale=turbo", "scalar.limits=[0,0.5]", "scalar.bands=5")
-    assert run("recolor", "z.npz", *others, "-o", "one.png").code == 0
+    assert run("recolor", "z.npz", *others).err == "wrote z-recolored.png\n"
     assert run("render", "scene", *SMALL, *shown, *others, "-o", "two.png").code == 0
-    assert is_same("one.png", "two.png")
+    assert is_same("z-recolored.png", "two.png")
     assert run("recolor", "z.npz", "side", "--object", "navy", "-o", "three.png").code == 0
 
 
@@ -86,82 +86,3 @@ def test_every_command_with_settings_tells_once_what_a_ramp_unsets(saved: Path, 
     (saved.parent / "scene.png").unlink()
     ran = run(*line.split(), "--set", "surfaces.side.ramp=red,blue")
     assert (ran.code, ran.err.count(RAMP)) == (0, 1)
-
-
-def named(name: str) -> Scene:
-    """A wall whose surface has a name."""
-    scene = wall_scene(lights=[])
-    parts = (scene.parts[0].replace(surface=name),)
-    return scene.replace(surfaces=(scene.surfaces[0].replace(name=name),), parts=parts)
-
-
-def test_the_surface_s_name_in_the_output_s_is_made_one_of_a_file(folder: Path, run: Run) -> None:
-    scene = named("a/b")
-    write_picture("wall.npz", scene, render(scene, (32, 24)))
-    assert run("recolor", "wall.npz", "a/b", "--object", "red").err == "wrote wall-b.png\n"
-    assert run("recolor", "wall.npz", *settings("mapping=gamma")).err == "wrote wall-recolored.png\n"
-
-
-NO_SURFACE = (
-    "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE body"
-    " --object navy"
-)
-RENDERS = (
-    "--set: a setting of a picture must need no rendering, such as colors, the mapping, or limits and bands"
-    " of a scalar; use it with `autocolor render`"
-)
-
-
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        ("scene.npz", 2, NO_SURFACE),
-        ("scene.npz --object navy --set mapping=gamma", 2, NO_SURFACE),
-        ("scene.npz --palette one.csv --set mapping=gamma", 2, NO_SURFACE),
-        ("scene.npz --set ambient=0.5", 2, RENDERS),
-        ("scene.npz --set scalar.name=x", 2, RENDERS),
-        (
-            "scene.npz side --palette one.csv --blend 1",
-            2,
-            "--palette gives all colors of a surface; leave the other options of colors out",
-        ),
-        (
-            "scene.npz side --palette one.csv",
-            65,
-            "one.csv: a ramp must have 2 to 1,024 colors, not 1; use --object for a single color",
-        ),
-        (
-            "scene.npz side --palette many.csv",
-            65,
-            "many.csv: a ramp must have 2 to 1,024 colors, not 1,025; choose some of them",
-        ),
-        ("scene.npz side --palette no.gpl", 66, ""),
-        ("scene.npz sid", 2, ""),
-        ("scene.npz side --blend much", 2, ""),
-        ("scene.npz side --ramp #200,#f60 --blend 0", 2, ""),
-        ("two.obj side", 65, ""),
-        ("scene.npz side -o new.gif", 2, ""),
-    ],
-)
-def test_what_is_refused_writes_nothing(
-    saved: Path, refused: Refused, line: str, code: int, sentence: str
-) -> None:
-    write_palette("one.csv", ["red"])
-    write_palette("many.csv", ["red"] * 1025)
-    assert refused(f"recolor {line}", code).startswith(sentence)
-
-
-@pytest.mark.parametrize("suffix", first(1, [".gpl", ".csv"]))
-def test_the_entries_of_a_range_come_back_from_a_palette_file(saved: Path, run: Run, suffix: str) -> None:
-    levels = settings("surfaces.side.levels=200")
-    assert run("recolor", "scene.npz", *levels, "-o", "before.png", "--save", "few.npz").code == 0
-    assert run("palette", "few.npz", "side", "-o", f"side{suffix}").code == 0
-    assert run("recolor", "few.npz", "side", "--object", "lime", "-o", "other.png").code == 0
-    again = ("few.npz", "side", "--palette", f"side{suffix}")
-    assert run("recolor", *again, "-o", "after.png", "--save", "new.npz").code == 0
-    assert is_same("before.png", "after.png")
-    assert not is_same("after.png", "other.png")
-    assert run("palette", "new.npz", "side", "-o", f"again{suffix}").code == 0
-    one, two = (read_palette(f"{name}{suffix}") for name in ("side", "again"))
-    assert one == two
-    assert len(one) == 200

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import errno
 import os
 import re
 import shlex
@@ -12,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, demo, image, images, read_picture, read_scene, write_scene
+from autocolor import MissingInputError, Studio, demo, image, images, read_picture, read_scene, write_scene
 from autocolor.commands.render import render as command
 from autocolor.images import SMOOTHNESSES
 from ramtek_emu import Ramtek9300
@@ -64,80 +63,30 @@ def test_the_smoothness_of_the_command_is_one_of_those_of_images() -> None:
     assert (option.type.min, option.type.max) == (SMOOTHNESSES[0], SMOOTHNESSES[-1])
 
 
-def test_one_light_alone_is_the_scene_with_the_others_off(folder: Path, run: Run) -> None:
-    for name, options in (
-        ("one", ("--light", "key")),
-        ("two", ("--set", "lights.key.2.on=false")),
-        ("both", ("--light", "key", "--light", "key.2")),
-        ("held", ("--light", "key", "--hold-exposure")),
-        ("all", ()),
-    ):
-        assert run("render", "scene", *SMALL, *options, "-o", f"{name}.png").code == 0
-    assert is_same("one.png", "two.png")
-    assert is_same("all.png", "both.png")
-    assert not is_same("one.png", "both.png")
-    # What the exposure of both lights shows of one is darker.
-    dark, bright = pixels("held.png").astype(int), pixels("one.png").astype(int)
-    assert (dark <= bright).all()
-    assert dark.sum() < 0.9 * bright.sum()
-
-
-def test_a_named_view_is_rendered(folder: Path, run: Run, refused: Refused) -> None:
+@pytest.mark.parametrize(
+    ("options", "settings"),
+    [
+        ("--light key", "--set lights.key.2.on=false"),
+        ("--view tilted", "--set view.angle=30"),
+        ("--normals", "--set words=normals"),
+    ],
+)
+def test_an_option_is_a_setting(folder: Path, run: Run, options: str, settings: str) -> None:
     scene = read_scene("scene")
     scene = scene.with_view(angle=30).with_saved_view("tilted").replace(view=scene.view)
     write_scene("scene", scene, overwrite=True)
-    for name, options in (
-        ("one", ("--view", "tilted")),
-        ("two", ("--set", "view.angle=30")),
-        ("three", ()),
-    ):
-        assert run("render", "scene", *SMALL, *options, "-o", f"{name}.png").code == 0
+    for name, each in (("one", options), ("two", settings), ("all", "--light key --light key.2")):
+        assert run("render", "scene", *SMALL, *each.split(), "-o", f"{name}.png").code == 0
     assert is_same("one.png", "two.png")
-    assert not is_same("one.png", "three.png")
-    refused("render scene --view tited", 2)
-    assert "\nnamed views: tilted\n" in run("info", "scene").out
+    assert not is_same("one.png", "all.png")
 
 
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        *((f"scene --smooth {smooth}", 2, "Error: Invalid value for '--smooth'") for smooth in ("5", "x")),
-        ("scene --size 4097x10", 2, "Error: Invalid value for '--size'"),
-        ("two.obj --up w", 2, "Error: Invalid value for '--up'"),
-        ("scene --light kye", 2, ""),
-        ("two.obj --set ambiet=1", 2, ""),
-        ("scene --set scalar.name=z --normals", 2, "--set: words must be 'levels' where a scalar"),
-        ("scene --set scalar.name=z --set words=normals", 2, "--set: words must be 'levels'"),
-        (
-            "scene --size 1600x1200 --smooth 4 --limit 0.5",
-            65,
-            "a picture of 1600 x 1200 pixels, each the mean",
-        ),
-        ("scene -o missing/a.png", 73, ""),
-        ("bad.obj", 65, ""),
-        ("''", 65, ""),
-    ],
-)
-def test_what_is_refused_writes_nothing(
-    folder: Path, refused: Refused, line: str, code: int, sentence: str
-) -> None:
-    (folder / "bad.obj").write_text("v 0 0\n")
-    assert refused(f"render {line}", code).startswith(sentence)
-
-
-def test_a_full_disk_leaves_what_was_there(
-    folder: Path, refused: Refused, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (folder / "mine.png").write_bytes(b"mine")
-
-    def full(_: int) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full)
-    for options in ("-o mine.png --force", "-o new.png", "--save new.npz"):
-        assert "could not be (no space left on device)" in refused(
-            f"render two.obj --size 32x24 {options}", 74
-        )
+def test_with_a_held_exposure_one_light_of_two_is_darker(folder: Path, run: Run) -> None:
+    for name, options in (("held", ("--hold-exposure",)), ("auto", ())):
+        assert run("render", "scene", *SMALL, "--light", "key", *options, "-o", f"{name}.png").code == 0
+    dark, bright = pixels("held.png").astype(int), pixels("auto.png").astype(int)
+    assert (dark <= bright).all()
+    assert dark.sum() < 0.9 * bright.sum()
 
 
 @pytest.mark.parametrize("name", ["-x", ".hid é", "x" * 250])
@@ -148,30 +97,10 @@ def test_names_with_spaces_dashes_dots_and_foreign_letters_are_names(
     assert run("render", *SMALL, "--", f"{name}.obj") == (0, "", f"wrote {name[:100]}.png\n")
 
 
-def test_words_that_stand_for_normals_are_asked_for_by_an_option_or_a_setting(folder: Path, run: Run) -> None:
-    for name, options in (
-        ("one", ("--normals",)),
-        ("two", ("--set", "words=normals")),
-        ("levels", ()),
-    ):
-        assert run("render", "scene", *SMALL, *options, "-o", f"{name}.png").code == 0
-    assert is_same("one.png", "two.png")
-    assert (pixels("one.png") != pixels("levels.png")).any()
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the limit of memory is Linux's")
-def test_a_picture_too_large_for_the_memory_ends_with_what_was_being_done(folder: Path, process: Run) -> None:
-    import resource
-
-    ran = process(
-        *("render", "scene", "--size", "4096x4096"),
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (500 << 20, 500 << 20)),
-    )
-    assert (ran.code, ran.out) == (71, "")
-    assert ran.err.startswith(
-        "autocolor: memory must suffice, and it ran out (visible surfaces, 4096 x 4096: "
-    )
-    assert not (folder / "scene.png").exists()
+def test_a_demo_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("autocolor.commands.demo.PLACES", (tmp_path,))
+    with pytest.raises(MissingInputError, match="install autocolor again"):
+        demo()
 
 
 # Other outputs.

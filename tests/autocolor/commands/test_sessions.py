@@ -8,21 +8,20 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from autocolor import UsageError, read_journal, read_scene
-from autocolor.commands.sessions import NEWEST, OLD, autosaved_session, chosen_session
+from autocolor.commands.sessions import autosaved_session, chosen_session
 from autocolor.journal import autosave
-from autocolor.journal.autosave import JOURNAL, OLD_SCRIPT
+from autocolor.journal.autosave import JOURNAL
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
-from tests.autocolor.commands.conftest import ROOT, Refused, Run
+from tests.autocolor.commands.conftest import ROOT, Run
 from tests.autocolor.commands.test_view import monitors as monitors
 from tests.autocolor.journal.random_steps import journal_of
 from tests.small import SMALL, car
@@ -192,31 +191,9 @@ def test_sessions_are_listed_with_their_scene_and_steps(sessions: Path, folder: 
     assert lines[2].endswith(f"  {folder / 'scene'}, 1 step")
 
 
-def test_a_session_of_an_older_version_is_listed_and_forgotten_but_not_recovered(
-    sessions: Path, run: Run, refused: Refused, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (sessions / "2026-01-02-c" / JOURNAL).rename(sessions / "2026-01-02-c" / OLD_SCRIPT)
-    assert run("view", "--sessions").out.splitlines()[0].endswith(f"  {OLD}")
-    assert refused("view --recover 2026-01-02-c", 65) == OLD
-    assert chosen_session(NEWEST)[0] == sessions / "2026-01-02-b"
-    assert capsys.readouterr().err == f"autocolor: {sessions / '2026-01-02-c'}: {OLD}\n"
-    assert run("view", "--forget", "2026-01-02-c").code == 0
-    assert not (sessions / "2026-01-02-c").exists()
-
-
 def link_folder(session: Path, precious: Path) -> None:
     shutil.rmtree(session)
     session.symlink_to(precious)
-
-
-def link_file(session: Path, precious: Path, name: str = JOURNAL) -> None:
-    (session / name).unlink(missing_ok=True)
-    (session / name).symlink_to(precious / JOURNAL)
-
-
-def make_folder(session: Path, _: Path) -> None:
-    (session / JOURNAL).unlink()
-    (session / JOURNAL).mkdir()
 
 
 def make_pipe(session: Path, _: Path) -> None:
@@ -226,12 +203,7 @@ def make_pipe(session: Path, _: Path) -> None:
 
 HOSTILE: dict[str, tuple[Callable[[Path, Path], object], str]] = {
     "a link": (link_folder, "hostile: it must not be a link; "),
-    "a journal that is a link": (link_file, "session.jsonl: it must not be a link; "),
-    "a lock that is a link": (partial(link_file, name="lock"), "lock: it must not be a link; "),
-    "a scene that is a link": (partial(link_file, name="scene-2"), ", 1 step"),
-    "a lock that is a folder": (lambda session, _: (session / "lock").mkdir(), ", 1 step"),
     "no journal": (lambda session, _: (session / JOURNAL).rename(session / "x"), "there is no such file"),
-    "a journal that is a folder": (make_folder, "must be a regular file"),
     "a journal that is a pipe": (make_pipe, "must be a regular file"),
     "an endless time": (lambda session, _: os.utime(session / JOURNAL, (1 << 60, 1 << 60)), ", 1 step"),
 }
@@ -279,22 +251,3 @@ def test_a_session_is_gone_on_with_in_full_screen_and_removed_when_it_ends(
     assert monitors[1].caption.startswith("autocolor - scene* - ")
     assert not (sessions / "2026-01-01-a").exists()
     assert (sessions / "2026-01-02-b").exists()
-
-
-ONE = "view must have one of SCENE, --recover, --sessions and --forget, not"
-
-
-@pytest.mark.parametrize(
-    ("line", "sentence"),
-    [
-        ("", f"{ONE} 0; name a scene"),
-        ("scene --recover", f"{ONE} 2; name a scene"),
-        ("--recover --sessions --forget 2026", f"{ONE} 3; name a scene"),
-        ("--set ambient=1 --sessions", "--set is for SCENE, not for sessions; leave it out"),
-        ("--sessions --paints a.csv", "--paints is for a scene or a session that is shown; leave it out"),
-    ],
-)
-def test_a_scene_or_one_thing_with_sessions_is_asked_for(
-    sessions: Path, refused: Refused, line: str, sentence: str
-) -> None:
-    assert refused(f"view {line}", 2) == sentence

@@ -10,27 +10,23 @@ from contextlib import suppress
 from pathlib import Path
 from threading import Event, Thread
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 
 from autocolor import Studio, UnavailableError, read_journal, read_scene
 from autocolor.commands.demo import demo_folder
-from autocolor.commands.show import BUTTONS, attend, folder_of, port_to, session_elsewhere
+from autocolor.commands.show import BUTTONS, attend, folder_of, session_elsewhere
+from autocolor.commands.tutorial import teach
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
-from autocolor.journal.places import Source
 from autocolor.screens.message_line import MessagePart, lines_of_message
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from ramtek_emu.host.server import Server, TcpServer, UnixServer
 from tests.autocolor.commands.conftest import Refused, Run
-from tests.autocolor.screens.hand import folded_section_of
 from tests.small import car
 from tests.tables import first
-
-Act = Callable[[Ramtek9300], object]
-AGAIN = "again"
-"""The result of an act that is not yet done."""
 
 
 class Served:
@@ -72,31 +68,6 @@ def test_a_picture_is_shown_once_on_a_display_behind_a_port(folder: Path, run: R
     here = Ramtek9300()
     Studio(read_scene("two.obj").replace(ambient=0.3), here)
     assert (server.display.field() == here.field()).all()
-
-
-EITHER = "show must have either SCENE or --recover; name a scene"
-OF_SCENE = "--set and --once are for SCENE, not for sessions; leave them out"
-ADDRESS = "--to: an address must be tcp://host:port"
-PAINTS = "--paints is for an interactive session, not for --once; leave one of them out"
-
-
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        (f"--to {NOWHERE}", 2, EITHER),
-        (f"scene --recover newest --to {NOWHERE}", 2, EITHER),
-        (f"--recover --once --to {NOWHERE}", 2, OF_SCENE),
-        (f"scene --paints a.gpl --once --to {NOWHERE}", 2, PAINTS),
-        ("scene --to 127.0.0.1:9300", 2, ADDRESS),
-        ("scene --to display", 2, ADDRESS),
-        ("scene", 2, "Error: Missing option '--to'"),
-        (f"scene --timeout 0.05 --to {NOWHERE}", 2, "Error: Invalid value for '--timeout'"),
-        (f"scene --to {NOWHERE}", 69, f"a display must listen at {NOWHERE}, and it is not reached"),
-        (f"--recover --to {NOWHERE}", 66, ""),
-    ],
-)
-def test_what_cannot_be_shown_is_refused(refused: Refused, line: str, code: int, sentence: str) -> None:
-    assert refused(f"show {line}", code).startswith(sentence)
 
 
 def test_paints_are_brought_to_a_display_elsewhere(
@@ -150,119 +121,49 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
 
 
 def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(folder: Path) -> None:
-    assert folder_of(Source("scene")) == folder / "scene"
-    assert folder_of(Source("scene/scene.toml")) == folder / "scene"
-    assert folder_of(Source(str(demo_folder()))) == folder
+    assert folder_of("scene") == folder / "scene"
+    assert folder_of("scene/scene.toml") == folder / "scene"
+    assert folder_of(str(demo_folder())) == folder
 
 
-def place_of(viewer: Viewer, label: str, share: float = 0.5) -> tuple[int, int]:
-    """Where a row of the menu is, at a share of its width."""
-    area = next(each.area for each in viewer.board.layout.rows if each.label == label)
-    return round(area.left + share * area.width), (area.top + area.bottom) // 2
-
-
-def acting(server: Served, viewer_of: list[Viewer], *acts: Act) -> Callable[[Viewer], None]:
-    """A preparation that lets a thread do things with the unit, each when the one before was polled."""
-
-    def prepare(viewer: Viewer) -> None:
-        viewer_of.append(viewer)
-        poll, waiting = viewer.poll, list(acts)
-
-        def polled() -> None:
-            poll()
-            if waiting and waiting[0](server.display) is not AGAIN:
-                waiting.pop(0)
-
-        viewer.poll = polled  # type: ignore[method-assign]
-
-    return prepare
-
-
-def menu(display: Ramtek9300) -> None:
-    display.joystick.move_to(639, 200)
-
-
-def on(viewer_of: list[Viewer], label: str, share: float = 0.5) -> Act:
-    """Point at a row of the menu, and press ENTER; first open its section, or turn to its page."""
-
-    def act(display: Ramtek9300) -> str:
-        viewer = viewer_of[0]
-        is_here = label in [row.label for row in viewer.board.layout.rows]
-        before = folded_section_of(viewer, label) or "more"
-        display.joystick.move_to(*place_of(viewer, label if is_here else before, share))
-        display.joystick.press_enter()
-        return "" if is_here else AGAIN
-
-    return act
-
-
-def test_it_is_left_by_the_menu_once_changes_were_told_and_the_picture_stays(
+def test_it_ends_when_it_is_left_and_the_picture_stays(
     server: Served, tmp_path: Path, capsys: pytest.CaptureFixture[str], state: Path
 ) -> None:
     seen: list[Viewer] = []
-    messages: list[str] = []
-    leave = on(seen, "leave")
-
-    def note(_: Ramtek9300) -> None:
-        messages.append(seen[0].message)
-
-    prepare = acting(server, seen, menu, on(seen, "turn", 0.9), leave, note, leave)
-    session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
-    assert capsys.readouterr().err.startswith(f"shown on {server.address}; pick `leave` in the menu there")
-    assert messages == ["not saved: save it, or leave once more to discard the changes"]
-    assert seen[0].studio.is_changed
-    display = server.display
-    assert (display.words == seen[0].studio.words).all()
-    assert not any(cursor.is_visible for cursor in display.cursors.all)
-    assert left_sessions() == []
-
-
-def test_the_first_message_names_the_buttons(server: Served, tmp_path: Path, state: Path) -> None:
-    seen: list[Viewer] = []
     first: list[MessagePart] = []
 
-    def note(_: Ramtek9300) -> None:
-        first.extend(seen[-1].board.messages)
+    def leave(viewer: Viewer) -> None:
+        seen.append(viewer)
+        first.extend(viewer.board.messages)
+        viewer.session.leave()
 
-    prepare = acting(server, seen, note, menu, on(seen, "leave"))
-    session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
-    (part,) = first
-    assert part.text.endswith(BUTTONS)
-    # The message is shown whole.
-    assert lines_of_message(part, 89)[-1].text.endswith("TRACK (right button) drags")
-
-
-def test_a_pointer_elsewhere_saves_in_the_folder_of_the_scene(server: Served, tmp_path: Path) -> None:
-    seen: list[Viewer] = []
-    saving = (menu, on(seen, "turn", 0.9), menu, on(seen, "file"), on(seen, "save"))
-    prepare = acting(server, seen, *saving, on(seen, "< picture"), menu, on(seen, "leave"))
-    session_elsewhere(History(car().replace(name="car")), server.address, tmp_path, None, prepare)
-    assert sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*")) == [
-        "car.npz",
-        "car/mesh.tables",
-        "car/scene.toml",
-    ]
+    session_elsewhere(History(car()), server.address, tmp_path, None, leave)
+    assert capsys.readouterr().err.startswith(f"shown on {server.address}; pick `leave` in the menu there")
+    # The first message, which is shown whole, names the buttons.
+    assert lines_of_message(first[0], 89)[-1].text.endswith(BUTTONS[-28:])
+    assert seen[0].folder == tmp_path
+    assert (server.display.words == seen[0].studio.words).all()
+    assert not any(cursor.is_visible for cursor in server.display.cursors.all)
+    assert left_sessions() == []
 
 
 def test_a_display_that_goes_away_leaves_the_session_to_be_recovered(
     server: Served, tmp_path: Path, state: Path
 ) -> None:
-    seen: list[Viewer] = []
-
-    def lose(_: Ramtek9300) -> None:
+    def lose(viewer: Viewer) -> None:
+        viewer.session.edit(viewer.studio.scene.with_view(angle=30))
         server.stop()
 
-    prepare = acting(server, seen, menu, on(seen, "turn", 0.9), lambda _: None, lose)
     with pytest.raises(UnavailableError) as told:
-        session_elsewhere(History(car()), server.address, tmp_path, None, prepare)
+        session_elsewhere(History(car()), server.address, tmp_path, None, lose)
     assert str(told.value).startswith(f"a display must stay at {server.address}, and it left (")
     assert str(told.value).endswith("; `autocolor show --recover --to ADDRESS` continues the session")
     (path,) = state.glob(f"sessions/*/{JOURNAL}")
-    assert read_journal(path).history.scene.view == seen[0].studio.scene.view != car().view
+    assert read_journal(path).history.scene.view.angle == 30
 
 
 def test_the_unit_is_polled_at_least_sixty_times_a_second_and_the_program_sleeps(
-    server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     now, slept, polls = 100.0, 0.0, 0
 
@@ -270,21 +171,20 @@ def test_the_unit_is_polled_at_least_sixty_times_a_second_and_the_program_sleeps
         nonlocal now, slept
         now, slept = now + seconds, slept + seconds
 
-    with port_to(server.address) as port:
-        viewer = Viewer(car(), port, tmp_path)
+    def update() -> None:
+        nonlocal now, polls
+        polls += 1
+        now += 0.25 if polls == 1 else 0.004
+        viewer.session.leaves = now >= 101.25
 
-        def update() -> None:
-            nonlocal now, polls
-            polls += 1
-            now += 0.25 if polls == 1 else 0.004
-            viewer.session.leaves = now >= 101.25
-
-        clock = SimpleNamespace(monotonic=lambda: now, sleep=sleep)
-        # `show` is a command in its module, which has the same name.
-        monkeypatch.setattr(sys.modules["autocolor.commands.show"], "time", clock)
-        attend(viewer, update)
+    viewer = Mock()
+    viewer.session.leaves = False
+    # `show` is a command in its module, which has the same name.
+    clock = SimpleNamespace(monotonic=lambda: now, sleep=sleep)
+    monkeypatch.setattr(sys.modules["autocolor.commands.show"], "time", clock)
+    attend(viewer, update)
     # The first poll, which took a quarter of a second, is not made up for.
-    assert 60 <= polls < 110
+    assert 60 <= polls == viewer.poll.call_count < 110
     assert slept > 0.5
 
 
@@ -316,12 +216,6 @@ def replying(reply: Callable[[bytes], bytes], greeting: bytes = b"") -> Serve:
     return serve
 
 
-def deafness(host: socket.socket) -> None:
-    """Send without end, and read nothing."""
-    while True:
-        host.sendall(b"\r\n")
-
-
 BANNER = b"SSH-2.0-OpenSSH_9.6\r\n"
 NO_ANSWER = "must answer within 0.3 seconds, and"
 ANOTHER = "and another server does; check the address, or start `ramtek serve` there"
@@ -332,11 +226,10 @@ ANOTHER = "and another server does; check the address, or start `ramtek serve` t
     ("serve", "seconds", "sentence"),
     [
         (replying(lambda _: b"", BANNER), 0.3, NO_ANSWER),
-        (deafness, 0.3, ""),
         (replying(lambda data: data), 60.0, ANOTHER),
         (replying(lambda _: bytes(range(256)) * 256), 60.0, ANOTHER),
     ],
-    ids=["banner", "deafness", "echo", "garbage"],
+    ids=["banner", "echo", "garbage"],
 )
 def test_a_server_that_is_no_display_is_refused(
     serve: Serve, seconds: float, sentence: str, options: str, refused: Refused
@@ -353,3 +246,18 @@ def test_a_server_that_is_no_display_is_refused(
         address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
         assert sentence in refused(f"show scene --to {address} --timeout {seconds} {options}", 69)
         thread.join(60)
+
+
+def test_it_is_taught_on_a_display_elsewhere(
+    folder: Path, run: Run, refused: Refused, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[tuple[str, str, Path, float]] = []
+
+    def session(history: History, address: str, place: Path, prepare: object, timeout: float) -> None:
+        assert prepare is teach
+        asked.append((history.scene.name, address, place, timeout))
+
+    monkeypatch.setattr("autocolor.commands.tutorial.session_elsewhere", session)
+    assert run("tutorial", "--to", "tcp://127.0.0.1:9300", "--timeout", "200").code == 0
+    assert asked == [("coupe", "tcp://127.0.0.1:9300", folder, 200.0)]
+    refused("tutorial --to 127.0.0.1", 2)

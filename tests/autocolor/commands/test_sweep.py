@@ -57,14 +57,11 @@ def test_a_size_given_for_a_smooth_picture_file_is_that_of_its_image(
     line = f"sweep a.npz --vary {COLOR}=red -o {{name}}.png --force"
     scene, picture = read_picture("a.npz")
     red = image(scene.with_surface("side", object_color="red"), picture)
-    for options in ("", "--size 45x30", "--smooth 3", "--size 45x30 --smooth 3"):
+    for options in ("", "--size 45x30 --smooth 3"):
         assert run(*line.split(), *options.split()) == (0, "", "made 1 picture\n")
         assert np.array_equal(pixels("red.png"), red)
-    film = f"animate a.npz --vary {COLOR}=red,blue --frames 2 -o a.apng --force"
-    assert run(*film.split(), "--size", "45x30").code == 0
-    for options in ("--size 135x90", "--size 640x480", "--smooth 1", "--size 45x30 --smooth 2"):
+    for options in ("--size 135x90", "--smooth 1"):
         refused(f"{line} {options}", 2)
-        refused(f"{film} {options}", 2)
 
 
 def test_a_table_is_multiplied_and_a_batch_is_resumed_by_processes(folder: Path, run: Run) -> None:
@@ -119,33 +116,6 @@ def test_a_sheet_has_the_columns_that_are_asked_for(folder: Path, run: Run) -> N
     assert run("sweep", "scene", "--vary", "ambient=0:1:4", "-o", "{name}.png", *sheet).code == 0
     with Image.open("s.png") as image:
         assert image.width > 4 * 160
-
-
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        ("", 2, "sweep must have --vary or --table; write it as in"),
-        ("--vary ambiet=1,2", 2, "--vary ambiet: there is no field 'ambiet'; did you mean 'ambient'?"),
-        ("--table t.csv", 65, "t.csv, column ambiet: there is no field 'ambiet'; did you mean"),
-        (
-            "--table t.csv --made ./t.csv --force",
-            2,
-            "--made must be a file of its own, not ./t.csv, which is read; name another",
-        ),
-        ("--vary ambient=1 --made scene --force", 2, "--made must be a file of its own, not scene, which is"),
-        (f"--vary {COLOR}=@no.gpl", 66, ""),
-        ("--vary ambient=1,2 --set ambiet=1", 2, ""),
-        ("--vary ambient=1,2 --sheet a.jpg", 2, ""),
-        ("--vary ambient=1,2 --columns 2", 2, "columns are for a contact sheet"),
-        ("--vary lights.key.on.on=1,2", 2, "--vary lights.key.on.on: light 'key': on must be true or false"),
-        (f"--vary {'x' * 300}=1,2", 2, f"--vary {'x' * 38}...{'x' * 38}: there is no field 'xxx"),
-    ],
-)
-def test_a_wrong_command_line_is_refused_before_anything_is_made(
-    refused: Refused, line: str, code: int, sentence: str
-) -> None:
-    Path("t.csv").write_text("ambiet\n1\n")
-    assert refused(f"sweep scene {line} -o {{name}}.png --size 32x24", code).startswith(sentence)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs SIGINT")

@@ -49,24 +49,14 @@ def test_a_scene_file_is_not_overwritten_without_force(box: Path, run: Run, refu
     assert 'surface = "surface"' in (box / "scene.toml").read_text()
 
 
-def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(
-    folder: Path, run: Run, refused: Refused
-) -> None:
-    scene = autocolor.read_scene(MESH).with_light(
-        "key",
-        half_spaces={"left": {"point": (0, 0, 0), "direction": (1, 0, 0)}},
-        except_parts=["lid"],
-        follows="eye",
-    )
+def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(folder: Path, run: Run) -> None:
+    scene = autocolor.read_scene(MESH).with_light("key", except_parts=["lid"], follows="eye")
     (folder / "pictures").mkdir()
     autocolor.write_picture("pictures/square.npz", scene, autocolor.render(scene, (32, 24)))
     light = json.loads(run("tables", "pictures/square.npz", "--json").out)["lights"][0]
     assert (light["follows"], light["except_parts"]) == ("eye", ["lid"])
-    assert light["half_spaces"]["left"]["direction"] == [1.0, 0.0, 0.0]
     ran = run("tables", "pictures/square.npz", "--write")
     assert ran.code == 0
     assert "wrote pictures/mesh.obj\nwrote pictures/scene.toml; to render it" in ran.err
     again = autocolor.read_scene("pictures")
     assert again.replace(mesh=scene.mesh, name=scene.name).equals(scene)
-    assert (again.mesh.coordinates == scene.mesh.coordinates).all()
-    refused("tables pictures/square.npz --write", 73)

@@ -74,10 +74,7 @@ def test_a_line_has_the_number_of_the_kind_how_many_and_rows_from_one() -> None:
     assert warped == " 4 warped 1: quads that are not flat (1)"
 
 
-@pytest.mark.parametrize(
-    ("count", "told"),
-    [(5, "unused 5: nodes that no polygon uses (5, 6, 7, 8, 9)"), (6, "(5, 6, 7, 8, 9, ...)")],
-)
+@pytest.mark.parametrize(("count", "told"), [(5, "(5, 6, 7, 8, 9)"), (6, "(5, 6, 7, 8, 9, ...)")])
 def test_many_rows_are_cut_in_a_line_and_whole_in_json(count: int, told: str) -> None:
     mesh = Mesh(np.vstack([SHEET.coordinates, np.full((count - 1, 3), 5.0)]), SHEET.node_numbers)
     faults = mesh_faults(mesh)
@@ -92,15 +89,9 @@ def test_many_rows_are_cut_in_a_line_and_whole_in_json(count: int, told: str) ->
         "polygons": [],
     }
     assert border["polygons"] == [1]
-    assert border["loops"] == [
-        {
-            "edges": 4,
-            "length": pytest.approx(4 + 2 * 5**0.5),
-            "center": [1, 1, 0.5],
-            "node": 1,
-            "closed": True,
-        }
-    ]
+    length = pytest.approx(4 + 2 * 5**0.5)
+    loop = {"edges": 4, "length": length, "center": [1, 1, 0.5], "node": 1, "closed": True}
+    assert border["loops"] == [loop]
 
 
 @pytest.mark.parametrize(
@@ -137,6 +128,5 @@ def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
     ]
     assert ([part.stage for part in scene.parts], scene.exposure) == ([False], "auto")
     colors = {tuple(color) for color in image(scene, render(scene, (80, 60))).reshape(-1, 3).tolist()}
-    red, green, blue = COLORS[list(KINDS).index("turned")]
     # A shade of the kind's color: its components keep their order.
-    assert any(g > b > r for r, g, b in colors), (red, green, blue)
+    assert any(g > b > r for r, g, b in colors), COLORS.split(",")[list(KINDS).index("turned")]

@@ -5,6 +5,7 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from autocolor.commands import view
 from autocolor.commands.window import connected
 from autocolor.files import opening
 from autocolor.files.state import recent_files
-from autocolor.screens.viewer import Viewer
+from autocolor.screens.session import Clipboard
 from ramtek_emu import NoScreenError, Ramtek9300
 from ramtek_emu.monitor import window
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
@@ -76,123 +77,26 @@ def test_paints_are_brought_along(folder: Path, run: Run, monitors: list[Any], l
     assert monitors[1].caption.endswith("a paint of few.csv: take them in color mixing")
 
 
-@pytest.mark.parametrize(
-    ("line", "code", "sentence"),
-    [
-        ("--paints few.csv view scene", 2, "--paints before a command is for the demo; write it after"),
-        ("--paints two.obj", 65, ""),
-    ],
-)
-def test_what_cannot_be_shown_opens_no_window(
-    refused: Refused, monitors: list[Any], line: str, code: int, sentence: str
-) -> None:
-    assert refused(line, code).startswith(sentence)
-    assert len(monitors) == 1
-
-
-def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
-    captions = []
-
-    def note(monitor: Any) -> None:
-        monitor.on_tick()
-        captions.append(monitor.caption)
-
-    def script(monitor: Any) -> None:
-        assert monitor.on_key(Key("c", "c"))
-        assert not monitor.on_key(Key("q", "q"))
-        note(monitor)
-        captions.append(str(monitor.on_close()))
-        note(monitor)
-        monitor.on_drop(folder / "none.obj")
-        monitor.on_drop(folder / "none.obj")
-        note(monitor)
-        monitor.tell("saved somewhere")
-        note(monitor)
-
-    monitors[0].script = staticmethod(script)
-    assert run("view", "scene").code == 0
-    assert captions[0].startswith("autocolor - scene* - [front.low] - object color #")
-    assert captions[1] == "False"
-    assert captions[2].endswith("not saved: Ctrl+S saves, close again to discard the changes")
-    assert captions[3].endswith("none.obj: there is no such file or folder; check the name")
-    assert captions[4].endswith("saved somewhere")
-
-
-@pytest.fixture
-def pair(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Monitor, Viewer]:
-    """A window without a screen and its viewer."""
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    display = Ramtek9300()
-    viewer = Viewer(car(), display, tmp_path)
-    return connected(Monitor(display), viewer), viewer
-
-
-def test_leaving_by_the_menu_closes_the_window(
-    pair: tuple[Monitor, Viewer], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monitor, viewer = pair
-    closed: list[bool] = []
-    monkeypatch.setattr(monitor, "close", lambda: closed.append(True))
-    assert monitor.on_tick is not None
+def test_the_input_of_the_window_reaches_the_viewer_and_its_caption_the_window() -> None:
+    viewer, update = Mock(caption="one"), Mock()
+    viewer.session.leaves = False
+    monitor: Any = connected(Monitor(Ramtek9300()), viewer, update)
+    monitor.on_key(Key("c", "C", shift=True))
+    viewer.on_key.assert_called_once_with("c", False, True, "C", False)
+    monitor.on_pointer(Pointer(300, 200, True, "press", 1, 2, control=True))
+    viewer.on_pointer.assert_called_once_with(300, 200, "press", 1, 2, False, True)
+    assert (monitor.caption, monitor.screenshots) == ("one", viewer.folder)
+    assert viewer.session.clipboard == Clipboard(monitor.copy, monitor.paste)
+    for name in ("on_release", "on_drop", "on_close"):
+        assert getattr(monitor, name) is getattr(viewer, name)
+    assert monitor.on_message is viewer.tell
+    monitor.close = Mock()
+    viewer.caption = "two"
     for leaves in (False, True):
-        if leaves:
-            viewer.session.leave()
+        viewer.session.leaves = leaves
         monitor.on_tick()
-        assert closed == [True] * leaves
-
-
-def test_the_clipboard_of_the_window_is_that_of_the_viewer(pair: tuple[Monitor, Viewer]) -> None:
-    monitor, viewer = pair
-    monitor.open()
-    try:
-        viewer.session.turn_to("mixing")
-        viewer.on_key("c", control=True)
-        assert viewer.message == f"copied {monitor.paste()}"
-        assert monitor.copy("teal")
-        viewer.on_key("v", control=True)
-        assert viewer.message == "object: #008080"
-    finally:
-        monitor.close()
-
-
-def test_the_window_is_recorded_beside_the_screenshots_of_the_viewer(
-    pair: tuple[Monitor, Viewer], tmp_path: Path
-) -> None:
-    monitor, viewer = pair
-    viewer.session.tell("")
-    for _ in range(2):
-        monitor.handle_key(Key("f3"))
-    assert viewer.message.startswith("saved ")
-    monitor.handle_key(Key("f12"))
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["autocolor-0001.apng", "autocolor-0001.png"]
-
-
-def test_the_mouse_and_released_keys_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
-    fields = []
-
-    def field(monitor: Any) -> bytes:
-        monitor.tell("")
-        monitor.on_tick()
-        return bytes(monitor.display.field().tobytes())
-
-    def script(monitor: Any) -> None:
-        for held in ({}, {"shift": True}, {"control": True}):
-            monitor.on_pointer(Pointer(300, 200, True, "press", 1, 1, **held))
-            monitor.on_pointer(Pointer(340, 240, True, "move", 0, 1, **held))
-            monitor.on_pointer(Pointer(340, 240, False, "release", 1, 1, **held))
-            fields.append(field(monitor))
-            monitor.on_key(Key("z", "", control=True))
-        monitor.on_key(Key("y", "", control=True))
-        monitor.on_key(Key("b", "b"))
-        compared = field(monitor)
-        monitor.on_release("b")
-        assert field(monitor) == fields[-1] != compared
-        monitor.on_pointer(Pointer(340, 200, False, "wheel up", steps=2))
-        assert field(monitor) != fields[-1]
-
-    monitors[0].script = staticmethod(script)
-    assert run("view", "scene").code == 0
-    assert len(set(fields)) == 3
+        assert (monitor.caption, update.call_count, monitor.close.called) == ("two", 1 + leaves, leaves)
+    viewer.on_tick.assert_called_with(monitor.is_at_rest)
 
 
 def test_the_demo_is_saved_to_new_files_and_a_scene_that_was_named_to_its_own(

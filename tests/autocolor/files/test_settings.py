@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Scene
-from autocolor.commands.settings import keys_after
+from autocolor.commands.settings import key_parts
 from autocolor.files.settings import field_of, place_of, scene_with, value_at
 from autocolor.scene.lights import HalfSpace
 from autocolor.testing import scenes
@@ -16,12 +16,7 @@ from tests.tables import refused
 
 def keys_of_scene(scene: Scene) -> list[str]:
     """All keys of fields that completion offers."""
-    starts = [""]
-    keys: list[str] = []
-    while starts:
-        for each in keys_after(scene, starts.pop()):
-            (keys if each.endswith("=") else starts).append(each)
-    return [key[:-1] for key in keys]
+    return ["".join(parts)[:-1] for parts in key_parts(Scene, scene)]
 
 
 def plain_at(scene: Scene, key: str) -> Any:

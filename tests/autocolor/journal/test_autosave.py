@@ -18,10 +18,8 @@ from autocolor.journal import autosave as autosave_module
 from autocolor.journal.autosave import (
     JOURNAL,
     LOCK,
-    OLD_SCRIPT,
     Autosave,
     forget,
-    journal_in,
     left_sessions,
     refuse_links,
 )
@@ -139,7 +137,7 @@ def test_a_session_is_left_when_no_program_has_its_lock(history: History, left: 
 def test_sessions_that_were_left_are_listed_the_last_first(history: History, left: Path) -> None:
     folders = [journal_of(history, left.with_name(name)).parent for name in ("c", "a", "d", "b")]
     for age, folder in enumerate((left, *folders)):
-        os.utime(journal_in(folder), (1e9 - age, 1e9 - age))
+        os.utime(folder / JOURNAL, (1e9 - age, 1e9 - age))
     assert left_sessions() == [left, *folders]
 
 
@@ -154,15 +152,6 @@ def test_a_session_that_goes_on_has_its_journal_in_the_same_folder(left: Path, s
     assert journals(state) == [journal]
     assert summary(read_journal(journal).history) == summary(history)
     autosave.end()
-    assert not left.exists()
-
-
-def test_a_script_of_an_older_version_is_a_left_session(left: Path) -> None:
-    (left / JOURNAL).rename(left / OLD_SCRIPT)
-    assert left_sessions() == [left]
-    assert journal_in(left) == left / OLD_SCRIPT
-    forget(left)
-    assert left_sessions() == []
     assert not left.exists()
 
 
