@@ -179,8 +179,8 @@ def test_a_carried_half_space_is_in_the_frame_of_its_light(
     light = Light("light", position, direction=toward)
     frame = light_frame(light)
     carried = light.replace(half_spaces=(HalfSpace("door", point, direction, carried=True),))
-    row = HalfSpace("door", point, direction)
-    placed = row.replace(**frame.to_world(row))
+    world = frame.to_world(HalfSpace("door", point, direction))
+    placed = HalfSpace("door", world["point"], world["direction"])
     points = wall_points()
     one, other = (
         half_space_sides(each, points)["door"].row for each in (carried, light.replace(half_spaces=(placed,)))
