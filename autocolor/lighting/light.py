@@ -20,6 +20,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -66,7 +68,8 @@ class CameraLight(NamedTuple):
     falloff: Falloff | None = None
 
 
-class Rays(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Rays:
     """The rays from k points to a light: their lengths, and the cosines of Figures 1 and 3, (k,) each.
 
     `light` is cos(L); None without an axis. `rows` are the points with their normals and reflected views, as
@@ -85,7 +88,7 @@ class Rays(NamedTuple):
         rows = self.rows[which]
         return rows if self.places is None else columns(rows, self.places)
 
-    @property
+    @cached_property
     def view(self) -> RealArray[Any]:
         """The cosine of the normal and the direction to the eye, which is that of the reflected view."""
         return dot(self.vectors(NORMAL), self.vectors(REFLECTED_VIEW))
@@ -93,17 +96,16 @@ class Rays(NamedTuple):
     def at(self, places: Indices) -> Rays:
         """The rays from some of the points."""
         light = None if self.light is None else self.light.take(places)
-        length, incidence, eye = (array.take(places) for array in self[:3])
+        length, incidence, eye = (array.take(places) for array in (self.length, self.incidence, self.eye))
         of_rows = places if self.places is None else self.places.take(places)
         return Rays(length, incidence, eye, light, self.rows, of_rows)
 
     def within(self, some: slice) -> Rays:
         """The rays from a slice of the points; views of these arrays."""
         light = None if self.light is None else self.light[some]
-        rays = Rays(self.length[some], self.incidence[some], self.eye[some], light, self.rows, self.places)
-        if self.places is None:
-            return rays._replace(rows=self.rows[:, some])
-        return rays._replace(places=self.places[some])
+        rows = self.rows[:, some] if self.places is None else self.rows
+        places = None if self.places is None else self.places[some]
+        return Rays(self.length[some], self.incidence[some], self.eye[some], light, rows, places)
 
 
 def rays_to(light: CameraLight, rows: RealArray[Any]) -> Rays:
@@ -132,12 +134,15 @@ def exact_rays_to(light: CameraLight, rows: Singles) -> Rays:
     return rays_to(light, exact)
 
 
-def light_at(light: CameraLight, rays: Rays, model: ReflectionModel) -> RealArray[Any]:
-    """Controls x cos(I) and controls x cos^N(E) at some points, (2, k); 0 where cos(I) <= 0."""
+def light_at(light: CameraLight, rays: Rays, factor: RealArray[Any]) -> RealArray[Any]:
+    """Controls x cos(I) and controls x cos^N(E) at some points, (2, k); 0 where cos(I) <= 0.
+
+    `factor` is cos^N(E), (k,), from `specular_factor`.
+    """
     share = (rays.incidence > 0).astype(rays.incidence.dtype)
     for _, left in shares_of(light, rays):
         share *= left
-    return np.stack([share * rays.incidence, share * specular_factor(model, rays)])
+    return np.stack([share * rays.incidence, share * factor])
 
 
 def specular_factor(model: ReflectionModel, rays: Rays) -> RealArray[Any]:

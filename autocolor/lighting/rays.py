@@ -74,10 +74,10 @@ def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, f
     products = factors @ rows[POINT.start : POINT_SQUARED + 1]
     squares, ahead = products[0], None if light.axis is None else products[1]
     squares += np.float32(square)
-    close = CLOSE * max(square, radius**2)
-    places = np.flatnonzero(squares <= close)
-    shortest = math.sqrt(max(float(squares.min()), close, LEAST_DISTANCE**2))
-    length = np.sqrt(np.maximum(squares, np.float32(LEAST_DISTANCE**2), out=squares), out=squares)
+    close, least = CLOSE * max(square, radius**2), float(squares.min())
+    places = np.flatnonzero(squares <= close) if least <= close else np.empty(0, np.intp)
+    squares[places] = 1
+    length = np.sqrt(squares, out=squares)
     incidence /= length
     eye /= length
     if ahead is not None and light.axis is not None:
@@ -86,11 +86,11 @@ def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, f
     rays = Rays(length, incidence, eye, ahead, rows)
     if len(places):
         exact = rays_to(light, columns(rows, places))
-        for array, values in zip(rays[:4], exact[:4], strict=True):
-            if array is not None:
-                array[places] = values
+        length[places], incidence[places], eye[places] = exact.length, exact.incidence, exact.eye
+        if ahead is not None and exact.light is not None:
+            ahead[places] = exact.light
     # The nearest point is at most as far from the origin as the light and the ray together.
-    distance = math.sqrt(square)
+    distance, shortest = math.sqrt(square), math.sqrt(max(least, close, LEAST_DISTANCE**2))
     size = distance + min(radius, distance + shortest)
     return rays, ROUNDING * max(LEAST_ROUNDING, CANCELLATION * (size / shortest) ** 2)
 

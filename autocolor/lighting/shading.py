@@ -161,7 +161,8 @@ def _reflect(
     share = None if is_lit is None or is_lit.all() else is_lit.astype(np.float32)
     for _, left in shares_of(light, rays):
         share = left if share is None else np.multiply(share, left, out=share)
-    again = uncertain_share(light, rays, rounding)
+    of_share = uncertain_share(light, rays, rounding)
+    again = np.zeros(out.shape[1], np.bool_) if of_share is None else of_share.copy()
     for (start, end), model in zip(pairwise([0, *ends]), models, strict=True):
         if start == end:
             continue
@@ -173,18 +174,25 @@ def _reflect(
         else:
             np.multiply(some.incidence, share[here], out=planes[DIFFUSE])
             np.multiply(factor, share[here], out=planes[SPECULAR])
-        found = [uncertain_factor(model, some, factor, rounding), None if again is None else again[here]]
-        uncertain = [each for each in found if each is not None]
-        if uncertain:
-            wanted = np.logical_or.reduce(uncertain)
-            places = np.flatnonzero(wanted if is_lit is None else wanted & is_lit[here])
-            if len(places):
-                exact = exact_rays_to(light, some.at(places).vectors(slice(None)))
-                computed = light_at(light, exact, model)
-                planes[SPECULAR, places] = computed[SPECULAR]
-                if again is not None:
-                    of_share = again[here][places]
-                    planes[DIFFUSE, places[of_share]] = computed[DIFFUSE, of_share]
+        of_factor = uncertain_factor(model, some, factor, rounding)
+        if of_factor is not None:
+            again[here] |= of_factor
+
+    # Compute the uncertain points again.
+    places = np.flatnonzero(again if is_lit is None else np.logical_and(again, is_lit, out=again))
+    if len(places):
+        exact = exact_rays_to(light, rays.at(places).vectors(slice(None)))
+        bounds = pairwise(np.searchsorted(places, [0, *ends]).tolist())
+        factors = [
+            specular_factor(model, exact.within(slice(start, end)))
+            for (start, end), model in zip(bounds, models, strict=True)
+            if start < end
+        ]
+        computed = light_at(light, exact, np.concatenate(factors))
+        out[SPECULAR, places] = computed[SPECULAR]
+        if of_share is not None:
+            of_share = of_share[places]
+            out[DIFFUSE, places[of_share]] = computed[DIFFUSE, of_share]
 
 
 @underflowing

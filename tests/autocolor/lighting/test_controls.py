@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import Any
 
@@ -304,7 +305,7 @@ def test_a_point_is_in_the_cone_up_to_its_rim(cosine: float, cone_angle: float, 
     points = wall_points()
     rays, _ = fast_rays(camera_light(spot(30.0, None), points), points.rows, points.radius)
     for kind in (np.float32, np.float64):
-        assert is_within(rays._replace(light=np.array([cosine], kind)), cone_angle).tolist() == [lit]
+        assert is_within(dataclasses.replace(rays, light=np.array([cosine], kind)), cone_angle) == [lit]
 
 
 def cosine(degrees: float) -> float:
