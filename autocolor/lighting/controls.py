@@ -61,31 +61,24 @@ def soft_cone_share(cos_light: RealArray[Any], inner_angle: float, cone_angle: f
     return soften(fraction)
 
 
-class Falloff(NamedTuple):
-    """Falloff: (1 - f)^n at the distance f as a fraction of the reach, n = 1 or 2, and 0 beyond it.
+def falloff_share(light: Light, reach: float, length: RealArray[Any]) -> RealArray[Any]:
+    """(1 - f)^n at the distance f as a fraction of the reach, n = 1 or 2, and 0 beyond it.
 
     Departs: the light of the paper does not depend on the distance, nor does a light without a falloff here.
     Rejected: 1/d^2, which has no upper limit. A point close to the light would take the whole range of levels
     and leave all others black. This falloff stays within 0 to 1, and ends.
     """
-
-    reach: float
-    exponent: int
-
-    def share(self, length: RealArray[Any]) -> RealArray[Any]:
-        """All of the light at the light itself, nothing at its reach, for the lengths of some rays."""
-        left: RealArray[Any] = np.divide(length, length.dtype.type(-self.reach))
-        left += 1
-        np.maximum(left, 0, out=left)
-        return left if self.exponent == 1 else left * left
+    left: RealArray[Any] = np.divide(length, length.dtype.type(-reach))
+    left += 1
+    np.maximum(left, 0, out=left)
+    return left if light.falloff == "linear" else left * left
 
 
-def falloff_of(light: Light, points: VisiblePoints) -> Falloff | None:
-    """The falloff of a light in the unit of some points, if it has any."""
+def reach_of(light: Light, points: VisiblePoints) -> float | None:
+    """The reach of a light with a falloff, in the unit of some points; None without."""
     if light.falloff == "none" or light.reach is None:
         return None
-    reach = min(max(light.reach / points.unit, LEAST_REACH), FARTHEST)
-    return Falloff(reach, 1 if light.falloff == "linear" else 2)
+    return min(max(light.reach / points.unit, LEAST_REACH), FARTHEST)
 
 
 # Flaps and half-spaces.
@@ -143,16 +136,14 @@ def flaps_of(light: Light) -> dict[Axis, Flap | None]:
 def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], LitSide]:
     """The sides of the flaps that are on, without ends at infinity."""
     sides: dict[tuple[Axis, FlapEnd], LitSide] = {}
-    for row, (axis, flap) in enumerate(flaps_of(light).items()):
+    for number, (axis, flap) in enumerate(flaps_of(light).items()):
         if flap is None or not flap.on:
             continue
-        ends: dict[FlapEnd, tuple[float, float]] = {
-            "minimum": (1.0, flap.minimum),
-            "maximum": (-1.0, flap.maximum),
-        }
-        for end, (sign, limit) in ends.items():
+        ends: dict[FlapEnd, float] = {"minimum": flap.minimum, "maximum": flap.maximum}
+        for end, limit in ends.items():
             if math.isfinite(limit):
-                x, y, z = (sign if number == row else 0.0 for number in range(3))
+                sign = 1.0 if end == "minimum" else -1.0
+                x, y, z = (sign if row == number else 0.0 for row in range(3))
                 sides[axis, end] = side_of(points, f"flap {axis}", (x, y, z), sign * limit, flap.edge_width)
     return sides
 

@@ -7,7 +7,6 @@ budget. The planes of further lights are computed in turns, in the same array, a
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping, Set
 from typing import Final, NamedTuple
 
@@ -16,7 +15,6 @@ import numpy as np
 from autocolor.arrays import Singles, underflowing
 from autocolor.budget import allowed_memory
 from autocolor.immutable import read_only
-from autocolor.lighting.light import CameraLight
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import camera_light
 from autocolor.lighting.shading import LightPlanes, SurfaceWeights, light_mix, mix, shade
@@ -63,15 +61,14 @@ def illuminate(
     shared = np.empty((2, len(points.pixels)), np.float32) if in_turns else None
     updates = {
         name: _plane_update(
-            lights[name],
-            reusable.get(name),
-            changed,
-            surface_weights,
-            points,
-            with_controls,
-            shared if name in in_turns else None,
+            reusable.get(name), changed, of_light, len(points.pixels), shared if name in in_turns else None
         )
-        for name, surface_weights in weights.lights.items()
+        for name, of_light in weights.lights.items()
+    }
+    cameras = {
+        name: camera_light(lights[name], points, with_controls)
+        for name, update in updates.items()
+        if update.changed_surfaces
     }
 
     # Finish a chunk before the next, so that its rows and planes are fetched from memory only once.
@@ -81,9 +78,9 @@ def illuminate(
         sums[:] = weights.ambient
         scratch = np.empty_like(sums)
         numbers = {surface.surface_number for surface in chunk.slices}
-        for update in updates.values():
-            if update.light is not None and not numbers.isdisjoint(update.changed_surfaces):
-                shade(update.planes.values, update.light, points, chunk, models)
+        for name, update in updates.items():
+            if not numbers.isdisjoint(update.changed_surfaces):
+                shade(update.planes.values, cameras[name], points, chunk, models)
             mixed = scratch if update.planes.mixed is None else update.planes.mixed[chunk.pixels]
             if update.to_mix:
                 mix(update.planes, chunk, out=mixed)
@@ -135,40 +132,29 @@ def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> 
 class _PlaneUpdate(NamedTuple):
     """The planes of a light that shines, and the computations that they need.
 
-    If `light` is given, the values of the planes are computed on the surfaces `changed_surfaces`. If
-    `to_mix`, the weighted sum of both planes is computed everywhere.
+    The values of the planes are computed on the surfaces `changed_surfaces`. If `to_mix`, the weighted sum of
+    both planes is computed everywhere.
     """
 
     planes: LightPlanes
-    light: CameraLight | None
     changed_surfaces: Set[int]
     to_mix: bool
 
 
 def _plane_update(
-    light: Light,
-    old: LightPlanes | None,
-    changed: Set[int],
-    weights: SurfaceWeights,
-    points: VisiblePoints,
-    with_controls: bool,
-    shared: Singles | None,
+    old: LightPlanes | None, changed: Set[int], weights: SurfaceWeights, count: int, shared: Singles | None
 ) -> _PlaneUpdate:
-    """The update of a light that shines, given its reusable planes and the changed surfaces.
+    """The update of a light that shines on `count` points, given its reusable planes and changed surfaces.
 
-    New planes are computed in the array `shared`, (2, n), if it is given, else in an array of their own.
+    New planes are computed in the array `shared`, (2, count), if it is given, else in an array of their own.
     """
     if old is None:
-        values = np.empty((2, len(points.pixels)), np.float32) if shared is None else shared
-        ready = camera_light(light, points, with_controls)
-        return _PlaneUpdate(LightPlanes(values, weights), ready, weights.keys(), to_mix=True)
-    if not changed:
-        if old.weights != weights:
-            return _PlaneUpdate(LightPlanes(old.values, weights), None, changed, to_mix=True)
-        if old.mixed is not None:
-            return _PlaneUpdate(old, None, changed, to_mix=False)
-        # This light stays while another light is edited: keep its mix for further edits.
-        planes = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
-        return _PlaneUpdate(planes, None, changed, to_mix=True)
-    planes = LightPlanes(old.values.copy(), weights)
-    return _PlaneUpdate(planes, camera_light(light, points, with_controls), changed, to_mix=True)
+        values = np.empty((2, count), np.float32) if shared is None else shared
+        return _PlaneUpdate(LightPlanes(values, weights), weights.keys(), to_mix=True)
+    if changed:
+        return _PlaneUpdate(LightPlanes(old.values.copy(), weights), changed, to_mix=True)
+    if old.weights != weights:
+        return _PlaneUpdate(LightPlanes(old.values, weights), changed, to_mix=True)
+    # This light stays while another light is edited: keep its mix for further edits.
+    mixed = np.empty(count, np.float32) if old.mixed is None else old.mixed
+    return _PlaneUpdate(LightPlanes(old.values, weights, mixed), changed, to_mix=old.mixed is None)

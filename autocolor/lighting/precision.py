@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from autocolor.arrays import ROUNDING, Booleans, RealArray
 from autocolor.lighting.light import CameraLight, Rays, least_cosine
-from autocolor.scene.reflection_models import Phong, ReflectionModel, half_length_squared
+from autocolor.scene.reflection_models import Phong, ReflectionModel
 
 ERROR: Final = 8.5e-5
 """Assumed: how far rounding may put the share of a light, 0 to 1: a fortieth of a level."""
@@ -49,13 +49,14 @@ def uncertain_factor(
     """Whether rounding could change the specular factor of a model; None if it cannot at any point.
 
     A change of cos(E) changes the logarithm of N.H by the same over |L + V|^2, and that of the factor by the
-    model's steepness times as much.
+    model's steepness times as much. |L + V| is (N.L + N.V) / (N.H), so at least N.L + N.V.
     """
     rounding = max(rounding, ROUNDING_OF_EYE)
     if isinstance(model, Phong):
         return is_steep(rays.eye, model.exponent, rounding)
     spread = model.steepness * (rounding + ROUNDING_OF_HALF) / ERROR
-    uncertain: Booleans = factor * spread > half_length_squared(rays.incidence, rays.eye, rays.view)
+    least = rays.incidence + rays.view
+    uncertain: Booleans = factor * spread > least * least
     return uncertain
 
 

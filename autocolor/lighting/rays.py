@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import ROUNDING, Floats, Singles, columns, unit_vector
 from autocolor.checks import Vector
-from autocolor.lighting.controls import FARTHEST, falloff_of, sides_of
+from autocolor.lighting.controls import FARTHEST, reach_of, sides_of
 from autocolor.lighting.light import GRAZING, LEAST_DISTANCE, CameraLight, Rays, rays_to
 from autocolor.scene.lights import Light, middle_between
 from autocolor.scene.scene import Scene
@@ -44,7 +44,7 @@ def camera_light(light: Light, points: VisiblePoints, with_controls: bool = True
         return CameraLight(light, position, None)
     if light.concentration == 0 and light.cone_angle is None:
         axis = None
-    return CameraLight(light, position, axis, tuple(sides_of(light, points)), falloff_of(light, points))
+    return CameraLight(light, position, axis, tuple(sides_of(light, points)), reach_of(light, points))
 
 
 def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, float]:
