@@ -17,13 +17,14 @@ import numpy as np
 from autocolor.arrays import Bytes, Words, chunks, light_of
 from autocolor.checks import is_whole, shown
 from autocolor.errors import UsageError
-from autocolor.files.writing import check_suffix, write_atomically
+from autocolor.files.writing import check_suffix, refuse_output, write_atomically
 from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
 from autocolor.mapping.display_image import DisplayImage, LevelImage
 from autocolor.mapping.legend import legend
 from autocolor.mapping.normal_words import NormalImage
 from autocolor.mapping.ranges import FEWEST_LEVELS, WORDS
-from autocolor.scene.scene import NORMALS, Scene
+from autocolor.rendering import SIZE, checked_size, render
+from autocolor.scene.scene import NORMALS, Scene, check_scene
 from autocolor.sending import configuration_of, send_image, shown_colors
 from ramtek_emu import HostPort
 
@@ -50,24 +51,30 @@ def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
     """
     check_surfaces(scene, picture)
     sizes = configuration_of(display)
-    lines, elements = picture.lines // picture.smooth, picture.elements // picture.smooth
-    if hasattr(display, "configuration") and (lines > sizes.shown_lines or elements > sizes.shown_elements):
+    width, height = picture.size
+    if hasattr(display, "configuration") and (width > sizes.shown_elements or height > sizes.shown_lines):
         raise UsageError(
             f"a picture must be at most {sizes.shown_elements} x {sizes.shown_lines}, as large as the"
-            f" display, not {elements} x {lines}; render it smaller, or take a larger configuration"
+            f" display, not {width} x {height}; render it smaller, or take a larger configuration"
         )
     send_image(display, middles(display_image(scene, picture), picture.smooth))
 
 
-def image(scene: Scene, picture: Picture, *, smooth: int | None = None) -> Bytes:
+def image(
+    scene: Scene,
+    picture: Picture | None = None,
+    *,
+    size: tuple[int, int] | None = None,
+    smooth: int | None = None,
+) -> Bytes:
     """The picture in the colors of a scene, (lines, elements, 3) uint8: red, green, blue.
 
-    The colors are the same as on a display, without the legend of a scalar. With `smooth`, as in
-    `save_image`, there are `smooth` times fewer lines and elements. Raises InputError if an intensity is not
-    finite, or if the surfaces of the picture are not those of the scene; UsageError as `save_image`.
+    The colors are the same as on a display, without the legend of a scalar. `picture`, `size` and `smooth`
+    are as in `save_image`. Raises InputError if an intensity is not finite, or if the surfaces of the picture
+    are not those of the scene; UsageError as `save_image`.
     """
-    check_surfaces(scene, picture)
-    smooth = _smooth_of(picture, smooth)
+    _check(scene, picture)
+    picture, smooth = _picture_of(scene, picture, size, smooth)
     shown_image = display_image(scene, picture)
     return averaged(shown_image.entries, shown_image.words, smooth)
 
@@ -75,36 +82,43 @@ def image(scene: Scene, picture: Picture, *, smooth: int | None = None) -> Bytes
 def save_image(
     path: str | PathLike[str],
     scene: Scene,
-    picture: Picture,
+    picture: Picture | None = None,
     *,
-    overwrite: bool = False,
+    size: tuple[int, int] | None = None,
     smooth: int | None = None,
+    overwrite: bool = False,
     level: int | None = None,
     sync: bool = True,
 ) -> None:
-    """Write the picture as a display shows it to a PNG file, atomically, with the legend of a scalar.
+    """Write the picture of a scene to a PNG file, atomically, with the legend of a scalar.
 
-    Without a legend it has the colors of `image`. With `smooth`, each pixel of the file is the mean of a
-    square of `smooth` pixels a side, so that edges are smooth. By default `smooth` is that of the picture:
+        autocolor.save_image("coupe.png", scene)
+        autocolor.save_image("large.png", scene, size=(1280, 960), smooth=4)
 
-        picture = autocolor.render(scene, smooth=4)
-        autocolor.save_image("coupe.png", scene, picture)   # 640 x 480 pixels
+    Without a legend the file has the colors of `image`. Each of its pixels is the mean of a square of
+    `smooth` pixels of the picture a side, so that edges are smooth; with 1 it is the picture of a display.
+
+    Without a `picture` the scene is rendered. `size` is the width and height of the file, by default
+    (640, 480), and `smooth` by default 2, and 1 for more than 10 million pixels. A picture has a size of its
+    own, and `smooth` is by default the picture's.
 
     `level` is the compression: from 0, fastest, to 9, smallest, by default `ramtek_emu.png.LEVEL`. With
     `sync=False` the file is not synced to the disk, for programs that write many images: a killed program
     still leaves whole files, but after a power failure a new file may be empty.
 
     Raises UsageError if the scene and the picture are in the wrong order, for a name that ends as another
-    kind of file does, for a wrong `level`, and if the lines or elements are no multiple of `smooth`;
-    InputError if the surfaces of the picture are not those of the scene; OutputError if the file exists and
-    `overwrite` is false, or if it cannot be created; WriteError if writing fails.
+    kind of file does, for a wrong `level` or `size`, for a `size` beside a picture, and if the lines or
+    elements of the picture are no multiple of `smooth`; InputError as `render`, and if the surfaces of the
+    picture are not those of the scene; OutputError if the file exists and `overwrite` is false, or if it
+    cannot be created; WriteError if writing fails.
     """
     from ramtek_emu.png import png_bytes
 
-    check_surfaces(scene, picture)
+    _check(scene, picture)
     check_suffix(path, ".png", "an image")
     check_png_level(level)
-    smooth = _smooth_of(picture, smooth)
+    refuse_output(path, overwrite=overwrite)
+    picture, smooth = _picture_of(scene, picture, size, smooth)
     data = png_bytes(smoothed(display_image(scene, picture), smooth), level)
     write_atomically(path, data, overwrite=overwrite, sync=sync)
 
@@ -167,29 +181,56 @@ SMOOTHNESSES: Final = (1, 2, 3, 4)
 """What commands and screens offer as `smooth`."""
 
 SMOOTHNESS: Final = 2
-"""Assumed: the `smooth` of an image that a command or a screen writes, unless the user chooses another.
+"""Assumed: the `smooth` of an image of a scene, unless the user chooses another.
 
 Compared on the coupe, the bracket and the teapot: with 2, the stairs at edges are gone and the dots of thin
 lines faint, for three times the time. With 3, the shut lines of the coupe are even, for six times the time,
-but 3840 x 2160 pixels exceed the memory budget. With 4, no difference is seen at a glance. In Python the
-default is 1: a picture has the lines and elements that its user asks for, and its image the colors of a
-display.
+but 3840 x 2160 pixels exceed the memory budget. With 4, no difference is seen at a glance. The default
+of `render` is 1: a picture has the lines and elements that its user asks for.
 """
+
+MOST_SMOOTH_PIXELS: Final = 10_000_000
+"""Limit: the pixels of an image that is smooth by default. Four times as many fit in the memory budget."""
 
 PIXELS_AT_ONCE: Final = 1 << 14
 
 
-def _smooth_of(picture: Picture, smooth: int | None) -> int:
-    """The number itself, by default the picture's. Raises UsageError."""
+def default_smooth(size: tuple[int, int]) -> int:
+    """SMOOTHNESS, or 1 for an image of more than MOST_SMOOTH_PIXELS. Raises UsageError for a wrong size."""
+    width, height = checked_size(size)
+    return SMOOTHNESS if width * height <= MOST_SMOOTH_PIXELS else 1
+
+
+def _check(scene: Scene, picture: Picture | None) -> None:
+    """Raise UsageError unless the scene is a scene; `check_surfaces` also checks a given picture."""
+    if picture is None:
+        check_scene(scene)
+    else:
+        check_surfaces(scene, picture)
+
+
+def _picture_of(
+    scene: Scene, picture: Picture | None, size: tuple[int, int] | None, smooth: int | None
+) -> tuple[Picture, int]:
+    """The picture of a scene and its `smooth`, from the arguments of `save_image`. Raises its errors."""
+    if picture is None:
+        size = SIZE if size is None else size
+        picture = render(scene, size, smooth=default_smooth(size) if smooth is None else smooth)
+        return picture, picture.smooth
+    if size is not None:
+        raise UsageError(
+            f"a size must be for a scene without its picture, not for a picture of {picture.elements} x"
+            f" {picture.lines} pixels; leave one of them out"
+        )
     if smooth is None:
-        return picture.smooth
+        return picture, picture.smooth
     check_smooth(smooth)
     if picture.lines % smooth or picture.elements % smooth:
         raise UsageError(
             f"the lines and elements of a picture must be multiples of smooth, {smooth}, not {picture.lines}"
             f" and {picture.elements}; render with smooth={smooth}"
         )
-    return smooth
+    return picture, smooth
 
 
 def averaged(entries: Bytes, words: Words, smooth: int) -> Bytes:
@@ -243,14 +284,14 @@ def middles(image: DisplayImage, smooth: int) -> DisplayImage:
 
 
 LARGEST: Final = 4096
-"""The most elements and lines of an image: the size of the largest display memory.
+"""The largest width and height that commands and screens take: the size of the largest display memory.
 
 `render` goes up to `LARGEST_RASTER`.
 """
 
 
 def size_of(text: str) -> tuple[int, int]:
-    """The elements and the lines in the text of a size. Raises UsageError.
+    """The width and the height in the text of a size. Raises UsageError.
 
     >>> size_of("1280x960")
     (1280, 960)
@@ -259,7 +300,7 @@ def size_of(text: str) -> tuple[int, int]:
     size = (int(match[1]), int(match[2])) if match else (0, 0)
     if not all(1 <= count <= LARGEST for count in size):
         raise UsageError(
-            f"a size must be ELEMENTSxLINES, each from 1 to {LARGEST}, not {text[:60]!r}; write it as in"
+            f"a size must be WIDTHxHEIGHT, each from 1 to {LARGEST}, not {text[:60]!r}; write it as in"
             " 1280x960"
         )
     return size

@@ -38,6 +38,9 @@ from autocolor.visibility.watkins import watkins
 
 LOG: Final = logger_of(__name__)
 
+SIZE: Final = (640, 480)
+"""The width and height of a picture, unless its user chooses others: those of the display of 1983."""
+
 LARGEST_RASTER: Final = 16384
 """Limit: lines, and elements. The memory budget refuses a picture with this many of both."""
 
@@ -59,44 +62,54 @@ class Rendering:
 
 def render(
     scene: Scene,
-    lines: int = 480,
-    elements: int = 640,
+    size: tuple[int, int] = SIZE,
     algorithm: str = "batch",
     *,
     limit: float | None = None,
     smooth: int = 1,
 ) -> Picture:
-    """The picture of a scene, (lines, elements), up to 16,384 of each; a display ends at 4,096.
+    """The picture of a scene; `size` is its width and height, up to 16,384 each. A display ends at 4,096.
 
-    With `smooth`, the picture has `smooth` times the lines and elements: `image` and `save_image` average
-    squares of its pixels, so that edges are smooth.
+    The arrays of a picture are [line, element], so a picture of the size (640, 480) has the shape (480, 640).
+    With `smooth`, it has `smooth` times the lines and elements: `image` and `save_image` average squares of
+    its pixels, so that edges are smooth.
 
     `algorithm` is "batch", which processes all lines at once, or "watkins", the literal scan-line algorithm,
     which gives the same picture some fifteen times slower. `limit` is a factor for the memory budget. Raises
     InputError if an intensity exceeds the range of float32, or if the picture needs more memory than the
     budget allows; UsageError for an invalid size, algorithm, limit or `smooth`.
     """
-    check_smooth(smooth)
-    for what, size in (("lines", lines), ("elements", elements)):
-        most = LARGEST_RASTER // smooth
-        if not is_whole(size, 1, most):
-            where = f" where smooth is {smooth}" if smooth > 1 else ""
-            raise UsageError(
-                f"{what} must be a whole number from 1 to {most}{where}, not {shown(size)}; choose another"
-            )
+    elements, lines = checked_size(size, smooth)
     if not isinstance(algorithm, str) or algorithm not in ALGORITHMS:
         raise UsageError(f"there is no algorithm {shown(algorithm)}{nearest(algorithm, ALGORITHMS)}")
-    # Integers of numpy would change the types of arrays.
-    lines, elements, smooth = int(lines), int(elements), int(smooth)
+    smooth = int(smooth)
     with allowing(limit):
         if smooth > 1:
             require_memory(
                 BYTES_OF_PIXEL * lines * elements * smooth**2,
                 f"a picture of {elements} x {lines} pixels, each the mean of {smooth} x {smooth},",
-                "render fewer lines and elements, or with a smaller `smooth`",
+                "render it smaller, or with a smaller `smooth`",
             )
         picture = rendering(scene, smooth * lines, smooth * elements, algorithm=algorithm).picture
     return picture if smooth == 1 else dataclasses.replace(picture, smooth=smooth)
+
+
+def checked_size(size: tuple[int, int], smooth: int = 1) -> tuple[int, int]:
+    """The width and the height of a picture with this `smooth`, as integers of Python. Raises UsageError.
+
+    Integers of numpy would change the types of arrays.
+    """
+    check_smooth(smooth)
+    most = LARGEST_RASTER // smooth
+    is_pair = isinstance(size, (tuple, list)) and len(size) == 2
+    if not is_pair or not all(is_whole(count, 1, most) for count in size):
+        where = f" where smooth is {smooth}" if smooth > 1 else ""
+        raise UsageError(
+            f"a size must be (width, height), each from 1 to {most}{where}, not {shown(size)}; write it as in"
+            " (640, 480)"
+        )
+    width, height = map(int, size)
+    return width, height
 
 
 def rendering(
@@ -122,7 +135,7 @@ def rendering(
         require_memory(
             BYTES_OF_PIXEL * lines * elements,
             f"a picture of {elements} x {lines} pixels",
-            "render fewer lines and elements",
+            "render it smaller",
         )
         _keep_arrays()
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)

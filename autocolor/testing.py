@@ -450,9 +450,8 @@ def recolorings(surfaces: Sequence[str] = ("body", "glass")) -> st.SearchStrateg
     return st.builds(Recoloring, st.sampled_from(surfaces), changes)
 
 
-LINES: Final = 24
-ELEMENTS: Final = 32
-"""The size of the pictures that the checks render of scenes."""
+SIZE: Final = (32, 24)
+"""The width and height of the pictures that the checks render of scenes."""
 
 Subject = TypeVar("Subject", Scene, Studio)
 
@@ -463,8 +462,8 @@ def check_recoloring_moves_no_word(
     """Raise AssertionError if an edit of colors moves a word.
 
     `subject` is a scene or a studio, and `edit` is a `Recoloring` or a function of yours, which returns the
-    edited scene or edits the studio. The scene is rendered before and after the edit, with 24 lines and 32
-    elements, and mapped to words anew. A `picture` of the scene is used instead if you give one; an edit that
+    edited scene or edits the studio. The scene is rendered before and after the edit, 32 x 24
+    pixels, and mapped to words anew. A `picture` of the scene is used instead if you give one; an edit that
     needs another picture then fails. A studio keeps the edit. Its display must hold the same words after it,
     and if it is a `Ramtek9300`, no word may even have been written.
 
@@ -573,7 +572,7 @@ def _states(
 
 
 def _state_of_scene(scene: Scene, picture: Picture | None = None) -> _State:
-    image = display_image(scene, render(scene, LINES, ELEMENTS) if picture is None else picture)
+    image = display_image(scene, render(scene, SIZE) if picture is None else picture)
     return _State(image.words, image.entries, image.ranges)
 
 

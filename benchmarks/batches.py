@@ -124,7 +124,7 @@ def light_moves(count: int = MOVES) -> Spread:
     batch, alone = [], []
     before = rendering(scene)
     image = display_image(scene, before.picture)
-    with closing(autocolor.batch_results(scene, places, ordered=True)) as results:
+    with closing(autocolor.batch_results(scene, places, smooth=1, ordered=True)) as results:
         next(results)
         for place in islice(places, 1, None):
             begun = time.process_time()

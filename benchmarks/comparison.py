@@ -33,7 +33,7 @@ def comparison_scene() -> Scene:
         lights=[light.replace(flaps=Flaps()) for light in scene.lights],
         surfaces=[surface.replace(object_color=WHITE) for surface in scene.surfaces],
     )
-    weaker = BRIGHTEST / autocolor.render(scene, LINES, ELEMENTS).ranges.whole.maximum
+    weaker = BRIGHTEST / autocolor.render(scene, (ELEMENTS, LINES)).ranges.whole.maximum
     return scene.replace(
         ambient=scene.ambient * weaker,
         lights=[light.replace(intensity=light.intensity * weaker) for light in scene.lights],
@@ -46,7 +46,7 @@ def expected(scene: Scene) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.bool
     The field is (lines, elements, 3) float32: the color of each pixel's surface times its intensity, 255 for
     1, and the background's color elsewhere.
     """
-    picture = autocolor.render(scene, LINES, ELEMENTS)
+    picture = autocolor.render(scene, (ELEMENTS, LINES))
     colors = np.array([BLUE, *(surface.paint.object_color for surface in scene.surfaces)], np.float32)
     covered = picture.surface_number > 0
     shown = np.where(covered, picture.intensity, np.float32(1))

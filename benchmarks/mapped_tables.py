@@ -144,7 +144,7 @@ def convert(source: str, folder: str) -> dict[str, Any]:
 def render(folder: str, rounds: str) -> dict[str, Any]:
     """Seconds of opening tables with the first picture, and of a frame, and MB at the peak of both."""
     # Some modules are imported on the way.
-    autocolor.render(autocolor.read_scene(SMALL), 12, 16)
+    autocolor.render(autocolor.read_scene(SMALL), (16, 12))
     with watched() as peak:
         begin = time.perf_counter()
         scene = scene_of(read_npy_tables(Path(folder, NODES), Path(folder, POLYGONS)).mesh, view=OVER_HILLS)

@@ -66,7 +66,7 @@ def memory(scene: str) -> Spread:
 def memory_of(scene: Callable[[], autocolor.Scene]) -> float:
     """MB at the peak of making and rendering a scene here, its mesh included, over what was held before."""
     # Some modules are imported on the way.
-    autocolor.render(autocolor.read_scene(SMALL), 12, 16)
+    autocolor.render(autocolor.read_scene(SMALL), (16, 12))
     forget_peak()
     imported = peak()
     autocolor.render(scene())

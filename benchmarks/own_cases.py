@@ -74,5 +74,5 @@ def own_cases(scene: Scene) -> Iterator[Case]:
     yield Case(ONE_LIGHT, session.one_light)
     yield Case(ALL_LIGHTS, all_lights)
     yield Case(FRAME, frame)
-    yield Case(IMAGE, lambda: autocolor.image(scene, autocolor.render(scene)))
-    yield Case(SMOOTH_IMAGE, lambda: autocolor.image(scene, autocolor.render(scene, smooth=2)))
+    yield Case(IMAGE, lambda: autocolor.image(scene, smooth=1))
+    yield Case(SMOOTH_IMAGE, lambda: autocolor.image(scene))

@@ -55,10 +55,7 @@ def main(folder: Path = Path()) -> None:
     contrast = flatness(best.x) / flatness((0.0, 85.0))
     print(f"{best.nfev} places tried; azimuth {best.x[0]:.0f}, elevation {best.x[1]:.0f} degrees")
     print(f"the hood has {contrast:.1f} times the contrast")
-    panels = [
-        autocolor.image(scene, autocolor.render(scene, LINES, ELEMENTS, smooth=2))
-        for scene in (above, studio.scene)
-    ]
+    panels = [autocolor.image(scene, size=(ELEMENTS, LINES)) for scene in (above, studio.scene)]
     Image.fromarray(np.hstack(panels)).save(folder / "flatter.png")
 
 

@@ -18,7 +18,7 @@ import autocolor
 from autocolor import Flap, Light
 from scenes.modeling import head
 
-LINES, ELEMENTS = 240, 320
+SIZE = (320, 240)
 
 
 def main(folder: Path = Path(), scan: Path | None = None) -> None:
@@ -50,10 +50,7 @@ def main(folder: Path = Path(), scan: Path | None = None) -> None:
     flap = Flap(minimum=low[2] + (high - low)[2] / 3, edge_width=0.05 * size)
     lit = smooth.replace(lights=lights, ambient=0.03).with_light("rim", flaps={"z": flap})
 
-    a, b, c, d = (
-        autocolor.image(scene, autocolor.render(scene, LINES, ELEMENTS, smooth=2))
-        for scene in (lying, upright, smooth, lit)
-    )
+    a, b, c, d = (autocolor.image(scene, size=SIZE) for scene in (lying, upright, smooth, lit))
     Image.fromarray(np.vstack([np.hstack([a, b]), np.hstack([c, d])])).save(folder / "scan.png")
 
 

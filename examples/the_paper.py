@@ -44,8 +44,7 @@ def shown(scene: Scene) -> tuple[Studio, Ramtek9300]:
 
 def beside(*scenes: Scene) -> Image.Image:
     """The pictures of scenes, side by side."""
-    pictures = [autocolor.render(scene, 150, 200, smooth=2) for scene in scenes]
-    fields = [autocolor.image(*pair) for pair in zip(scenes, pictures, strict=True)]
+    fields = [autocolor.image(scene, size=(200, 150)) for scene in scenes]
     return Image.fromarray(np.hstack(fields)).quantize(192)
 
 
@@ -258,7 +257,7 @@ beside(pyramid, flood, flood.with_light("lamp", concentration=40))
 
 # %%
 alone = [coupe.only_lights(light.name) for light in coupe.lights]
-pictures = [autocolor.render(scene.replace(ambient=0), LINES, ELEMENTS) for scene in alone]
+pictures = [autocolor.render(scene.replace(ambient=0), (ELEMENTS, LINES)) for scene in alone]
 is_seen = picture.surface_number > 0
 total = np.sum([each.intensity for each in pictures], axis=0) + coupe.ambient
 assert np.allclose(picture.intensity[is_seen], total[is_seen], rtol=1e-4)

@@ -34,7 +34,7 @@ STRIP: Final = 20
 def recolored() -> list[Bytes]:
     """The frames of the moving picture: the coupe in several paints, above the lookup table."""
     scene = autocolor.demo()
-    picture = autocolor.render(scene, lines=LINES, elements=ELEMENTS, smooth=2)
+    picture = autocolor.render(scene, (ELEMENTS, LINES), smooth=2)
     paints = [{"surfaces.body.object_color": color} for color in COLORS_OF_FILM]
     shown = np.arange(ELEMENTS) * WORDS // ELEMENTS
     image, frames = display_image(scene, picture), []

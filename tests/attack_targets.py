@@ -221,12 +221,12 @@ def written(name: str, write: Callable[[Path], object]) -> bytes:
 def picture_samples() -> Iterator[bytes]:
     """Picture files of a small picture, without a scalar and with it."""
     for each in (scene(), scene().with_scalar(name="stress")):
-        write = partial(autocolor.write_picture, scene=each, picture=autocolor.render(each, 6, 8))
+        write = partial(autocolor.write_picture, scene=each, picture=autocolor.render(each, (8, 6)))
         yield written("small.npz", write)
 
 
 def fault_of_picture(_: bytes) -> str:
-    picture, scene = autocolor.read_picture("small.npz")
+    scene, picture = autocolor.read_picture("small.npz")
     if display_image(scene, picture).words.max(initial=0) > GMR_9300.largest_word:
         return "a word that no display has"
     return fault_of_scene(scene)

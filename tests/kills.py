@@ -158,7 +158,7 @@ def save_in_studio(folder: Path, number: int) -> None:
     source = Source(str(folder / "s"))
     history = History(read_scene(source.path), place_of(source))
     history.take(history.scene.replace(ambient=number / 1000), False)
-    save_session(history, render(history.scene, 24, 32), folder)
+    save_session(history, render(history.scene, (32, 24)), folder)
 
 
 def read_session(folder: Path) -> object:
@@ -171,7 +171,7 @@ def read_session(folder: Path) -> object:
 def save_picture(path: Path, number: int) -> None:
     """Save a small picture of scene `number`."""
     scene = scene_number(number)
-    write_picture(path, scene, render(scene, 24, 32), overwrite=True)
+    write_picture(path, scene, render(scene, (32, 24)), overwrite=True)
 
 
 def save_snapshot(path: Path, number: int) -> None:

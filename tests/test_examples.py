@@ -82,12 +82,11 @@ def test_scipy_finds_about_the_place_of_the_light_that_the_coupe_s_scene_has(
 def test_a_scan_stands_up_and_its_own_lights_leave_one_side_dark(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(light_a_scan, "LINES", lines := 180)
-    monkeypatch.setattr(light_a_scan, "ELEMENTS", elements := 240)
+    monkeypatch.setattr(light_a_scan, "SIZE", (240, 180))
     light_a_scan.main(tmp_path)
     picture = pixels_of(tmp_path / "scan.png").astype(float).mean(axis=2)
-    top, bottom = np.split(picture, [lines])
-    (lying, upright), (smooth, lit) = (np.split(row, [elements], axis=1) for row in (top, bottom))
+    top, bottom = np.split(picture, [180])
+    (lying, upright), (smooth, lit) = (np.split(row, [240], axis=1) for row in (top, bottom))
     for panel, is_upright in ((lying, False), (upright, True), (smooth, True)):
         down, across = np.nonzero(panel > 10)
         assert (np.ptp(down) > np.ptp(across)) == is_upright

@@ -29,6 +29,7 @@ pytestmark = pytest.mark.paper
 
 COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
 SHAPE = LINES, ELEMENTS = (48, 64)
+SIZE = (ELEMENTS, LINES)
 SMALL = Configuration(name="SMALL", elements=ELEMENTS, lines=LINES, planes=10, entries=1024)
 EYE = np.array([0.0, -4.0, 0.0])
 NORMAL = np.array([0.0, -1.0, 0.0])
@@ -44,7 +45,7 @@ def lit_wall(*lights: Light, **fields: Any) -> Scene:
 
 def intensity(scene: Scene) -> npt.NDArray[np.float32]:
     """The unscaled intensities of a scene, (48, 64)."""
-    return autocolor.render(scene, *SHAPE).intensity
+    return autocolor.render(scene, SIZE).intensity
 
 
 def points() -> Floats:
@@ -141,7 +142,7 @@ def test_the_hidden_surface_algorithm_sees_what_a_ray_through_each_pixel_meets_f
     cubes = scene_of(
         cube(), view=View((3.0, -4.0, 2.0), target=(0.5, 0.5, 0.5)), surface_of_part={"cube": "cube"}
     )
-    seen = autocolor.render(cubes, *SHAPE).surface_number > 0
+    seen = autocolor.render(cubes, SIZE).surface_number > 0
     hit = [
         [
             first_hit(cubes.mesh, cubes.view.eye, ray(cubes.view, *SHAPE, line, element)).polygon >= 0
@@ -155,7 +156,7 @@ def test_the_hidden_surface_algorithm_sees_what_a_ray_through_each_pixel_meets_f
 def test_polygons_that_pierce_each_other_are_cut_where_they_cross() -> None:
     """The top of the leaning wall is nearer than the upright one; they cross at z = 0."""
     upright, leaning = wall(), grid(1, 1, (-1, 0.5, -1), (2, 0, 0), (0, -1, 2), "leaning")
-    picture = autocolor.render(wall_scene(Mesh.joined([upright, leaning])), *SHAPE)
+    picture = autocolor.render(wall_scene(Mesh.joined([upright, leaning])), SIZE)
     column = [picture.surfaces[number - 1] if number else "" for number in picture.surface_number[:, 32]]
     assert column[10:24] == ["leaning"] * 14
     assert column[24:34] == ["wall"] * 10
@@ -219,14 +220,14 @@ def test_intensities_are_unscaled_floats_without_an_upper_limit() -> None:
 
 
 def test_the_number_of_the_surface_at_each_pixel_is_in_an_array_of_its_own() -> None:
-    picture = autocolor.render(two_boxes(), *SHAPE)
+    picture = autocolor.render(two_boxes(), SIZE)
     assert picture.surface_number.shape == SHAPE
     assert set(np.unique(picture.surface_number)) == {0, 1, 2}
     assert picture.surfaces == ("box 0", "box 1")
 
 
 def test_minimum_and_maximum_are_found_for_the_picture_and_for_each_surface() -> None:
-    picture = autocolor.render(two_boxes(), *SHAPE)
+    picture = autocolor.render(two_boxes(), SIZE)
     for number, name in enumerate(picture.surfaces, 1):
         of_surface = picture.intensity[picture.surface_number == number]
         assert picture.ranges.surfaces[name] == (of_surface.min(), of_surface.max())
@@ -306,9 +307,9 @@ def test_a_concentrated_light_shines_forward_alone() -> None:
 def test_aiming_takes_the_bright_spot_off_the_plane() -> None:
     """Figure 4, A and B."""
     scene = autocolor.read_scene(COUPE.parent / "pyramid")
-    point = autocolor.render(scene, *SHAPE)
+    point = autocolor.render(scene, SIZE)
     aimed = scene.light("lamp").replace(aim=(0.5, 0.0, 0.9), concentration=1)
-    flood = autocolor.render(scene.replace(lights=[aimed]), *SHAPE)
+    flood = autocolor.render(scene.replace(lights=[aimed]), SIZE)
     assert flood.ranges.surfaces["plane"].maximum < 0.6 * point.ranges.surfaces["plane"].maximum
 
 
@@ -328,7 +329,7 @@ def test_each_light_can_be_shown_alone_and_the_picture_is_their_sum() -> None:
     scene = autocolor.read_scene(COUPE)
     dark = scene.replace(ambient=0)
     alone = np.sum([intensity(dark.only_lights(light.name)) for light in scene.lights], axis=0)
-    whole = autocolor.render(scene, *SHAPE)
+    whole = autocolor.render(scene, SIZE)
     seen = whole.surface_number > 0
     assert whole.intensity[seen] == pytest.approx(alone[seen] + scene.ambient, rel=1e-4)
 
@@ -376,7 +377,7 @@ def test_a_cone_lights_what_is_within_its_angle_and_its_rim_is_sharp() -> None:
 def test_a_cone_isolates_one_of_several_objects() -> None:
     scene = two_boxes().replace(ambient=0.0)
     coned = scene.lights[0].replace(position=(1.9, 0.5, 9.0), aim=(1.9, 0.5, 0.5), cone_angle=4.0)
-    picture = autocolor.render(scene.replace(lights=[coned]), *SHAPE)
+    picture = autocolor.render(scene.replace(lights=[coned]), SIZE)
     assert picture.ranges.surfaces["box 1"].maximum > 0
     assert picture.ranges.surfaces["box 0"].maximum == 0
 
@@ -504,8 +505,8 @@ def place_of_lamp(hand: PaintingHand, view: str) -> tuple[int, int]:
 def test_the_angle_turns_the_horizontal_axis_of_the_picture_plane() -> None:
     """Figure 5, ANGLE: a quarter turn of a square picture turns its rows into columns."""
     scene = lit_wall(Light("a", (1.0, -3.0, 2.0)))
-    upright = autocolor.render(scene, 40, 40).intensity
-    turned = autocolor.render(scene.with_view(angle=90.0), 40, 40).intensity
+    upright = autocolor.render(scene, (40, 40)).intensity
+    turned = autocolor.render(scene.with_view(angle=90.0), (40, 40)).intensity
     assert turned == pytest.approx(np.rot90(upright, -1), rel=1e-4)
 
 

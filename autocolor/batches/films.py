@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.batches.making import Batch, Source, batch_results, checked_batch
+from autocolor.batches.making import Batch, Source, batch_results, checked_batch, scene_and_picture
 from autocolor.batches.runs import Start, tier_of
 from autocolor.batches.table import Result, Rows, Variant, variants_of
 from autocolor.checks import brief, shown
@@ -71,9 +71,9 @@ def animate(
 
     A frame costs its edit from the frame before. Memory is bounded, because frames are written as they are
     made; only a stream is in memory until its end. `frames_per_second` is 0.1 to 100, and at
-    most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are as in `render`.
+    most 50 for a GIF. With `loop`, a film begins again at its end. `size` and `smooth` are as in `batch`.
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
-    has the words of the first frame and then a load of the lookup table for each frame.
+    has the words of the first frame and then a load of the lookup table for each frame; it is never smooth.
 
     Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
     cannot be made, or if a frame of a .ramtek file changes more than entries. A film or a stream is then not
@@ -172,6 +172,10 @@ def _stream(
 ) -> Film:
     """Write the stream of an animation. Raises InputError if a frame changes more than entries."""
     refuse_output(path, overwrite=overwrite)
+    scene, picture = scene_and_picture(source)
+    if picture is None and smooth is None:
+        smooth = 1
+    source = scene if picture is None else (scene, picture)
     batch = checked_batch(source, variants, None, size=size, smooth=smooth, ordered=True)
     if batch.drawing.smooth > 1:
         raise UsageError(

@@ -33,19 +33,19 @@ from autocolor.batches.runs import Drawing, Made, Start, VariantTask, cut, make_
 from autocolor.batches.sheet import Box, ContactSheet, read_thumbnail
 from autocolor.batches.table import TABLE_BEGINS, Result, Rows, Variant, results_bytes, variants_of
 from autocolor.budget import allowed_memory, validated_limit
-from autocolor.checks import brief, is_whole, nearest, shown
+from autocolor.checks import brief, nearest, shown
 from autocolor.errors import InputError, OutputError, UnavailableError, UsageError, reason_of
 from autocolor.files.opening import is_picture, read_scene
-from autocolor.files.picture_file import SavedPicture, read_picture
+from autocolor.files.picture_file import read_picture
 from autocolor.files.settings import field_of, place_of, scene_with
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
-from autocolor.images import check_png_level
-from autocolor.lighting.picture import Picture, check_smooth, check_surfaces
-from autocolor.rendering import LARGEST_RASTER
+from autocolor.images import check_png_level, default_smooth
+from autocolor.lighting.picture import Picture, check_surfaces
+from autocolor.rendering import SIZE, checked_size
 from autocolor.scene.scene import Scene, check_scene
 
-Source = Scene | SavedPicture | tuple[Scene, Picture] | str | PathLike[str]
-"""What variants are made from: a scene, a scene with its picture, a picture that was read, or a path."""
+Source = Scene | tuple[Scene, Picture] | str | PathLike[str]
+"""What variants are made from: a scene, a scene with its picture, or the path of either."""
 
 VARIANTS_OF_RUN: Final = 16
 """The most variants of a run.
@@ -237,14 +237,12 @@ def _is_made_of(made: object, tasks: Sequence[VariantTask]) -> bool:
     return numbers == [task.number for task in tasks]
 
 
-def _source(source: Source) -> tuple[Scene, Picture | None]:
+def scene_and_picture(source: Source) -> tuple[Scene, Picture | None]:
     """The scene and, if there is one, the picture of a source. Raises InputError, UsageError."""
     if isinstance(source, (str, PathLike)):
         if not is_picture(Path(source)):
             return read_scene(source), None
         source = read_picture(source)
-    if isinstance(source, SavedPicture):
-        source = source.scene, source.picture
     if isinstance(source, tuple) and len(source) == 2:
         check_surfaces(*source)
         return source
@@ -255,26 +253,18 @@ def _source(source: Source) -> tuple[Scene, Picture | None]:
 def _drawing(picture: Picture | None, form: str, thumbnail: Box | None, options: Options) -> Drawing:
     """How to draw the pictures of a batch. Raises UsageError for a wrong or contradicting size."""
     size, smooth, level = options.get("size"), options.get("smooth"), options.get("level")
-    if smooth is not None:
-        check_smooth(smooth)
     check_png_level(level)
-    counts = None if size is None else tuple(size) if isinstance(size, (tuple, list)) else ()
-    if picture is not None:
-        own = picture.elements // picture.smooth, picture.lines // picture.smooth
-        if counts not in (None, own) or smooth not in (None, picture.smooth):
-            raise UsageError(
-                f"the size and smooth of a batch must be those of its picture, {own[0]} x {own[1]} and"
-                f" {picture.smooth}; leave them out, or give the scene alone"
-            )
-        counts, smooth = own, picture.smooth
-    counts, smooth = (640, 480) if counts is None else counts, smooth or 1
-    most = LARGEST_RASTER // smooth
-    if len(counts) != 2 or not all(is_whole(count, 1, most) for count in counts):
+    if size is None:
+        size = SIZE if picture is None else picture.size
+    if smooth is None:
+        smooth = default_smooth(size) if picture is None else picture.smooth
+    size = checked_size(size, smooth)
+    if picture is not None and (size, smooth) != (picture.size, picture.smooth):
         raise UsageError(
-            f"the size of pictures must be elements and lines, each from 1 to {most}, not {shown(size)};"
-            " write it as in (640, 480)"
+            "the size and smooth of a batch must be those of its picture, {} x {} and {}; leave them out, or"
+            " give the scene alone".format(*picture.size, picture.smooth)
         )
-    elements, lines = map(int, counts)
+    elements, lines = size
     return Drawing(lines, elements, int(smooth), form, level, thumbnail, validated_limit(None))
 
 
@@ -319,7 +309,7 @@ def checked_batch(
         raise UsageError(
             "a batch must have at least one variant, not none; add a row, or {} for the scene itself"
         )
-    scene, picture = _source(source)
+    scene, picture = scene_and_picture(source)
     check_keys(scene, rows)
     drawing = _drawing(picture, form, thumbnail, options)
     paths = () if output is None else paths_of(output, scene, rows)
@@ -366,7 +356,7 @@ def batch(
         paints = autocolor.grid({"surfaces.body.object_color": ["red", "navy"], "ambient": [0.05, 0.2]})
         autocolor.batch("scenes/coupe", paints, "out/{number:03}-{name}.png", sheet="paints.png")
 
-    `source` is a scene, a pair of a scene and its picture, what `read_picture` returns, or a path of either.
+    `source` is a scene, a pair of a scene and its picture as `read_picture` returns, or a path of either.
     A picture is only rendered again for variants that change the light or the view.
 
     `variants` are a list of `Variant`s, or of tables of values by key; see `grid` and `read_variants`.
@@ -377,7 +367,7 @@ def batch(
 
     - `executor`: any executor of concurrent.futures, also Dask's `Client.get_executor()`; by default this
       process does the work. Runs of variants travel to it, at least a run for each worker.
-    - `size`, by default (640, 480), and `smooth`, by default 1, as in `render`; a picture has its own.
+    - `size`, by default (640, 480), and `smooth`, by default 2, as in `save_image`; a picture has its own.
     - `level`: the compression of PNG files, 0 to 9; `sync=False` as in `save_image`.
     - `resume`: skip each variant whose file is whole and was made from the same scene or picture and the
       same settings, and replace the other files that a batch wrote. `overwrite` replaces any file.

@@ -15,7 +15,6 @@ from autocolor.commands.options import (
     hold_option,
     normals_option,
     size_option,
-    smooth_of,
     smooth_option,
 )
 from autocolor.commands.outputs import progress
@@ -112,7 +111,7 @@ def animate(
     normals: bool,
     jobs: int,
     size: tuple[int, int],
-    smooth: str | None,
+    smooth: int | None,
     force: bool,
 ) -> None:
     """Animate SCENE: a scene, a mesh file or a picture file.
@@ -124,6 +123,7 @@ def animate(
     from autocolor.batches import films
     from autocolor.batches.frames import frames_of_tracks, in_step, times_of
     from autocolor.batches.table import read_variants, varied
+    from autocolor.images import default_smooth
 
     if not varies and table is None and not turn:
         raise UsageError("animate must have --vary, --table or --turn; write it as in --turn 360")
@@ -137,7 +137,7 @@ def animate(
         except UsageError as error:
             raise InputError(f"{brief(table)}: {error}") from None
     tables += [varied(text) for text in varies]
-    samples = 1 if kind == films.STREAM and smooth is None else smooth_of(smooth, size)
+    samples = smooth or (1 if kind == films.STREAM else default_smooth(size))
     start, code = start_of(source, settings, size, samples if hold_exposure else 0, normals)
     refuse_keys(start, tables, table)
     tell_paints(start, tables)
@@ -154,7 +154,7 @@ def animate(
             frames_per_second=fps,
             loop=not once,
             size=size if is_sized or not is_picture else None,
-            smooth=samples if smooth or not is_picture else None,
+            smooth=smooth,
             executor=executor,
             overwrite=force,
             progress=lambda _: step(),

@@ -106,7 +106,7 @@ def _size(_context: click.Context, _parameter: click.Parameter, text: str) -> tu
 
 size_option = click.option(
     "--size",
-    metavar="ELEMENTSxLINES",
+    metavar="WIDTHxHEIGHT",
     default="640x480",
     show_default=True,
     callback=_size,
@@ -116,22 +116,11 @@ size_option = click.option(
 
 smooth_option = click.option(
     "--smooth",
-    type=click.Choice(["1", "2", "3", "4"]),
+    type=click.IntRange(1, 4),
+    metavar="1-4",
     help="Smooth edges: each pixel is the mean light of 1, 4, 9 or 16. 1 is the picture of a display."
     " Default: 2, and 1 for more than 10 million pixels.",
 )
-
-MOST_SMOOTH_PIXELS: Final = 10_000_000
-"""Limit: the pixels of a picture that is smooth by default. Four times as many fit in the memory budget."""
-
-
-def smooth_of(given: str | None, size: tuple[int, int]) -> int:
-    """The smoothness that `--smooth` asks for, or the default for a size."""
-    from autocolor.images import SMOOTHNESS
-
-    if given is not None:
-        return int(given)
-    return SMOOTHNESS if size[0] * size[1] <= MOST_SMOOTH_PIXELS else 1
 
 
 def _allow(context: click.Context, _: click.Parameter, limit: float | None) -> None:

@@ -8,7 +8,7 @@ from typing import Final
 import click
 from click.core import ParameterSource
 
-from autocolor.commands.options import size_option, smooth_of, smooth_option
+from autocolor.commands.options import size_option, smooth_option
 from autocolor.commands.outputs import progress, tell_written
 from autocolor.commands.scenes import SceneSource, scene_options, set_option
 from autocolor.commands.sweep import refuse_keys, scene_in, start_of, table_option, tell_paints, vary_option
@@ -45,7 +45,7 @@ def page(
     settings: tuple[str, ...],
     output: str | None,
     size: tuple[int, int],
-    smooth: str | None,
+    smooth: int | None,
     force: bool,
 ) -> None:
     """Write a page of SCENE that anyone can recolor: one HTML file, for any browser, without a network.
@@ -57,6 +57,7 @@ def page(
     from autocolor.batches.table import products, read_variants, varied
     from autocolor.files.paths import file_stem
     from autocolor.files.writing import check_suffix, refuse_output
+    from autocolor.images import default_smooth
     from autocolor.rendering import render
     from autocolor.web.exported import LARGEST_CANVAS, check_canvas, check_variants
     from autocolor.web.page import save_page
@@ -70,7 +71,7 @@ def page(
     start, code = start_of(source, settings, size)
     refuse_keys(start, tables, table)
     tell_paints(start, tables)
-    scene, (elements, lines) = scene_in(start), size
+    scene, (width, height) = scene_in(start), size
     if table is not None:
         try:
             check_variants(scene, tables[0], lights)
@@ -84,11 +85,11 @@ def page(
         picture = start.picture
     with progress(2) as step:
         if not isinstance(start, tuple):
-            samples = smooth_of(smooth, size)
-            if smooth is None and elements * lines * samples**2 > LARGEST_CANVAS:
+            samples = smooth or default_smooth(size)
+            if smooth is None and width * height * samples**2 > LARGEST_CANVAS:
                 samples = 1
-            check_canvas(elements * samples, lines * samples)
-            picture = render(scene, lines, elements, smooth=samples)
+            check_canvas(width * samples, height * samples)
+            picture = render(scene, size, smooth=samples)
         step()
         save_page(output, scene, picture, lights=lights, variants=variants, overwrite=force)
         step()

@@ -13,7 +13,6 @@ from autocolor.commands.options import (
     normals_option,
     paper_option,
     size_option,
-    smooth_of,
     smooth_option,
     with_held_exposure,
     with_normals,
@@ -109,7 +108,7 @@ def render(
     normals: bool,
     paper: bool,
     size: tuple[int, int],
-    smooth: str | None,
+    smooth: int | None,
     hold_exposure: bool,
     force: bool,
 ) -> None:
@@ -121,12 +120,13 @@ def render(
     others = {"--layers": layers, "--words": words, "--indexed": indexed}
     is_image_alone = not any(others.values())
     if smooth is None and (paper or not is_image_alone):
-        smooth = "1"
+        smooth = 1
 
     def rendered(scene: Scene) -> Picture:
+        from autocolor.images import default_smooth
         from autocolor.rendering import render
 
-        return render(scene, lines, elements, smooth=smooth_of(smooth, size))
+        return render(scene, size, smooth=smooth or default_smooth(size))
 
     def prepared(scene: Scene) -> Scene:
         scene = with_normals(scene.as_in_1983() if paper else scene, normals)
@@ -134,7 +134,6 @@ def render(
             scene = scene.with_taken_view(view_name)
         return with_held_exposure(scene, rendered(scene)) if hold_exposure else scene
 
-    elements, lines = size
     edited, report = read_edited(source, settings, size, prepared)
     if lights:
         edited = edited.only_lights(*lights)

@@ -15,7 +15,6 @@ from autocolor.commands.options import (
     hold_option,
     print_log,
     size_option,
-    smooth_of,
     smooth_option,
     with_held_exposure,
     with_normals,
@@ -127,7 +126,7 @@ def sweep(
     jobs: int,
     resume: bool,
     size: tuple[int, int],
-    smooth: str | None,
+    smooth: int | None,
     level: int | None,
     force: bool,
 ) -> None:
@@ -141,6 +140,7 @@ def sweep(
 
     from autocolor.batches.making import VariantWarning, batch
     from autocolor.batches.table import products, read_variants, varied
+    from autocolor.images import default_smooth
 
     if not varies and table is None:
         raise UsageError(
@@ -151,7 +151,7 @@ def sweep(
     is_sized = context.get_parameter_source("size") is ParameterSource.COMMANDLINE
     tables = [] if table is None else [read_variants(table)]
     tables += [varied(text) for text in varies]
-    samples = smooth_of(smooth, size)
+    samples = smooth or default_smooth(size)
     start, code = start_of(source, settings, size, samples if hold_exposure else 0)
     refuse_keys(start, tables, table)
     tell_paints(start, tables)
@@ -166,7 +166,7 @@ def sweep(
             output,
             executor=executor,
             size=size if is_sized or not is_picture else None,
-            smooth=samples if smooth or not is_picture else None,
+            smooth=smooth,
             level=level,
             overwrite=force,
             resume=resume,
@@ -199,8 +199,8 @@ def start_of(
     def prepared(scene: Scene) -> Scene:
         from autocolor.rendering import render
 
-        scene, (elements, lines) = with_normals(scene, normals), size
-        return with_held_exposure(scene, render(scene, lines, elements, smooth=hold)) if hold else scene
+        scene = with_normals(scene, normals)
+        return with_held_exposure(scene, render(scene, size, smooth=hold)) if hold else scene
 
     if is_picture(Path(source.path)):
         if normals:

@@ -45,10 +45,10 @@ PICTURE_FILE: Final = ArrayFileKind(
 
 
 class SavedPicture(NamedTuple):
-    """A picture and the scene that it was rendered from."""
+    """A scene and the picture that was rendered from it."""
 
-    picture: Picture
     scene: Scene
+    picture: Picture
 
 
 def write_picture(
@@ -92,7 +92,7 @@ def write_picture(
 
 
 def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> SavedPicture:
-    """The picture and the scene of a picture file; `limit` is a factor for the memory budget.
+    """The scene and the picture of a picture file; `limit` is a factor for the memory budget.
 
     Raises InputError if the file is damaged or incomplete, or if it needs more memory than the budget allows.
     """
@@ -103,7 +103,7 @@ def read_picture(path: str | PathLike[str], *, limit: float | None = None) -> Sa
         plain = header["scene"]
         mesh = mesh_of(header, arrays, plain["mesh"]["part_names"], plain["mesh"]["crease_angle"])
         scene = from_plain(Scene, {**plain, "mesh": mesh})
-        return SavedPicture(_picture(header, scene, arrays), scene)
+        return SavedPicture(scene, _picture(header, scene, arrays))
 
 
 def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyArray]) -> Picture:

@@ -126,6 +126,11 @@ class Picture(Immutable):
             smooth=smooth,
         )
 
+    @property
+    def size(self) -> tuple[int, int]:
+        """The width and height of an image of the picture: the elements and lines, divided by `smooth`."""
+        return self.elements // self.smooth, self.lines // self.smooth
+
     @cached_property
     @underflowing
     def intensity(self) -> Singles:
@@ -212,7 +217,7 @@ class Picture(Immutable):
         whole = self.ranges.whole
         smooth = f"smooth {self.smooth}, " if self.smooth > 1 else ""
         return (
-            f"Picture({self.lines} x {self.elements}, {smooth}{len(self.pixels)} pixels of {len(self.slices)}"
+            f"Picture({self.elements} x {self.lines}, {smooth}{len(self.pixels)} pixels of {len(self.slices)}"
             f" surfaces, intensities {whole.minimum:.4g} to {whole.maximum:.4g})"
         )
 

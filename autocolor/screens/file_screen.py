@@ -229,13 +229,13 @@ class FileScreen(Screen):
         """The caption and the small picture of a picture file; no picture if the file cannot be read."""
         try:
             self._check(path)
-            picture, scene = read_picture(path, limit=PART_OF_BUDGET)
+            scene, picture = read_picture(path, limit=PART_OF_BUDGET)
             shown = display_image(scene, picture)
         except AutocolorError:
             return "", None
         shrunk = max(picture.lines / THUMBNAIL_LINES, picture.elements / THUMBNAIL_ELEMENTS, 1)
         lines, elements = (max(1, round(size / shrunk)) for size in (picture.lines, picture.elements))
-        size = written_size((picture.elements // picture.smooth, picture.lines // picture.smooth))
+        size = written_size(picture.size)
         caption = f"{short_name(path.name, CHARACTERS - len(size) - 2)}  {size}"
         return caption, SmallPicture(thumbnail(shown, lines, elements), MOST_COLORS)
 
@@ -317,14 +317,14 @@ class FileScreen(Screen):
             ),
             Choice(
                 "size",
-                "The elements and lines of an exported image: of the display, or two or four times as many.",
+                "The width and height of an exported image: of the display, or two or four times as much.",
                 names=[written_size(each) for each in sizes],
                 present=size,
                 choose=self._choose_size,
             ),
             Entry(
                 "other size",
-                f"Other elements and lines of an exported image, up to {LARGEST}, as in 1920x1080.",
+                f"Another width and height of an exported image, up to {LARGEST}, as in 1920x1080.",
                 take=self._choose_size,
             ),
             Choice(
@@ -395,7 +395,7 @@ class FileScreen(Screen):
         """Export the image; a message says its name, or why there is none."""
         self._ticks_to_export = 0
         try:
-            self.session.export(*self._size, self._smooth)
+            self.session.export(self._size, self._smooth)
         except AutocolorError as error:
             self.session.warn(error)
 
@@ -407,7 +407,7 @@ def size_of_display(session: Session) -> tuple[int, int]:
 
 
 def written_size(size: tuple[int, int]) -> str:
-    """Elements and lines as text, as in "640x480"."""
+    """A width and a height as text, as in "640x480"."""
     return "{}x{}".format(*size)
 
 

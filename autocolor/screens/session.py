@@ -26,7 +26,6 @@ from autocolor.journal.description import describe
 from autocolor.journal.places import Source
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.intensity import held_exposure, stage_surfaces
-from autocolor.rendering import render
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.columns import fields_of
 from autocolor.scene.lights import Light
@@ -546,11 +545,12 @@ class Session:
         write_rig(path, self.scene)
         self.tell(f"saved {path.name}")
 
-    def export(self, elements: int, lines: int, smooth: int) -> None:
+    def export(self, size: tuple[int, int], smooth: int) -> None:
         """Save the picture at a size as a new PNG file, named after the scene, with a smoothness."""
         path = free_path(self._shown_folder() / f"{file_stem(self.scene.name)}.png")
-        save_image(path, self.scene, render(self.scene, lines, elements, smooth=smooth))
-        self.tell(f"saved {path.name}: {elements}x{lines}, smoothness {smooth}")
+        save_image(path, self.scene, size=size, smooth=smooth)
+        width, height = size
+        self.tell(f"saved {path.name}: {width}x{height}, smoothness {smooth}")
 
     def save_image(self) -> None:
         """Save the picture alone, with the legend of a scalar, as the next screenshot."""

@@ -50,7 +50,7 @@ def write_sheet(path: Path, paths: Sequence[Path] = ()) -> str:
 
 def our_picture(scene: Scene) -> Bytes:
     """Our picture of a scene."""
-    return autocolor.image(scene, autocolor.render(scene, HEIGHT, WIDTH))
+    return autocolor.image(scene, size=(WIDTH, HEIGHT), smooth=1)
 
 
 def absence() -> str:

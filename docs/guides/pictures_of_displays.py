@@ -122,10 +122,9 @@ def beside(*fields: Field, gap: int = 8) -> Field:
     return np.hstack(parts)
 
 
-def panel(scene: autocolor.Scene, caption: str, lines: int = 150, elements: int = 200) -> Field:
+def panel(scene: autocolor.Scene, caption: str, size: tuple[int, int] = (200, 150)) -> Field:
     """A small picture of a scene with smooth edges, and a caption below it."""
-    field = autocolor.image(scene, autocolor.render(scene, lines, elements, smooth=3))
-    return captioned(field, caption, size=1)
+    return captioned(autocolor.image(scene, size=size, smooth=3), caption, size=1)
 
 
 def paper_terms() -> Field:
@@ -145,8 +144,8 @@ def paper_terms() -> Field:
 def paper_1983() -> Field:
     """The coupe with what the paper describes, and as its scene file says."""
     car = autocolor.demo()
-    before = autocolor.image(car.as_in_1983(), autocolor.render(car.as_in_1983(), 225, 300))
-    return beside(captioned(before, "scene.as_in_1983()", 1), panel(car, "the scene file", 225, 300))
+    before = autocolor.image(car.as_in_1983(), size=(300, 225), smooth=1)
+    return beside(captioned(before, "scene.as_in_1983()", 1), panel(car, "the scene file", (300, 225)))
 
 
 def paper_controls() -> Field:

@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
-from autocolor import Mesh, Scene, image, render, scene_of
+from autocolor import Mesh, Scene, image, scene_of
 from docs.generate.commands import ROOT, here
 from scenes.figures import Field, captioned
 
@@ -197,7 +197,7 @@ def vase() -> tuple[list[tuple[float, float, float]], list[list[int]]]:
 
 def panel_of(scene: Scene) -> Field:
     """The picture of a scene at the size of a panel."""
-    return image(scene, render(scene, 240, 320, smooth=4))
+    return image(scene, size=(320, 240), smooth=4)
 
 
 def field_of(path: Path) -> Field:

@@ -138,15 +138,15 @@ def test_a_file_is_read_within_the_budget_that_it_asks_for_and_refused_below(
 
 def test_a_picture_is_rendered_within_the_budget_that_it_asks_for(asked: list[float]) -> None:
     scene = hills()
-    whole = render(scene, 30, 40)
+    whole = render(scene, (40, 30))
     needed = max(asked)
     assert needed == 96 * 30 * 40
     for more in (0, 1):
-        assert np.array_equal(render(scene, 30, 40, limit=factor(needed + more)).relative, whole.relative)
+        assert np.array_equal(render(scene, (40, 30), limit=factor(needed + more)).relative, whole.relative)
     with pytest.raises(InputError, match=r"a picture of 40 x 30 pixels must take .*; render fewer lines"):
-        render(scene, 30, 40, limit=factor(needed - 1))
+        render(scene, (40, 30), limit=factor(needed - 1))
     with pytest.raises(InputError, match=r"a picture of 16384 x 16384 pixels .* --limit 6.5 "):
-        render(scene, 16384, 16384)
+        render(scene, (16384, 16384))
 
 
 def test_normals_of_many_mapped_polygons_are_refused_before_they_are_computed(tmp_path: Path) -> None:
@@ -199,17 +199,17 @@ def unasked() -> AbstractContextManager[object]:
 
 def planes_for(scene: Scene, count: float) -> float:
     """The limit that allows the planes of this number of lights, and no more."""
-    return factor(count * BYTES_OF_LIGHT * len(render(scene, 30, 40).pixels) / SHARE * (1 + 1e-9))
+    return factor(count * BYTES_OF_LIGHT * len(render(scene, (40, 30)).pixels) / SHARE * (1 + 1e-9))
 
 
 @pytest.mark.parametrize("lights", [2, 5])
 def test_planes_that_do_not_fit_are_computed_in_turns_and_give_the_same_bits(lights: int) -> None:
     scene = lit_by(lights)
-    whole = render(scene, 30, 40)
+    whole = render(scene, (40, 30))
     assert len(whole.light_planes) == lights
     for fitting in (0.5, 1, 1.99, 2, lights - 0.01, lights, lights + 1):
         with allowing(planes_for(scene, fitting)), unasked():
-            picture = render(scene, 30, 40)
+            picture = render(scene, (40, 30))
         assert list(picture.light_planes) == [light.name for light in scene.lights][: int(fitting)]
         assert picture.relative.tobytes() == whole.relative.tobytes()
         for name, planes in picture.light_planes.items():
@@ -234,5 +234,5 @@ def test_an_edit_of_lights_computed_in_turns_is_as_a_fresh_picture(edit: Callabl
         edited = rendering(edit(scene), 30, 40, before)
         again = rendering(scene, 30, 40, edited)
     assert len(edited.picture.light_planes) <= 2
-    assert edited.picture.relative.tobytes() == render(edit(scene), 30, 40).relative.tobytes()
+    assert edited.picture.relative.tobytes() == render(edit(scene), (40, 30)).relative.tobytes()
     assert again.picture.relative.tobytes() == before.picture.relative.tobytes()

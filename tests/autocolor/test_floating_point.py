@@ -61,6 +61,6 @@ def test_nothing_raises_a_floating_point_error(mesh: Mesh, scale: list[float]) -
         scene = scene_of(Mesh(coordinates, mesh.node_numbers))
         mesh_faults(scene.mesh)
         for variant in variants(scene):
-            picture = render(variant, 24, 32)
+            picture = render(variant, (32, 24))
             assert np.isfinite(picture.relative).all()
             legend(display_image(variant, picture))

@@ -32,7 +32,7 @@ from autocolor import (
     send_picture,
     write_picture,
 )
-from autocolor.images import averaged, display_image, size_of
+from autocolor.images import averaged, default_smooth, display_image, size_of
 from autocolor.layers import save_layers
 from autocolor.mapping.legend import legend
 from autocolor.sending import shown_colors
@@ -44,7 +44,7 @@ from tests.small import SMALL, car, cube, held, opened, sphere, wall_scene
 from tests.tables import call, first, refused
 
 WALL = wall_scene()
-WALL_PICTURE = render(WALL, 6, 8)
+WALL_PICTURE = render(WALL, (8, 6))
 CUBE = scene_of(cube(), background="#203040")
 NOWHERE = Path("no such folder")
 
@@ -92,7 +92,7 @@ def test_a_file_is_never_written_over_unasked(tmp_path: Path, save: Any) -> None
 
 def words_in_use(levels: int) -> tuple[Scene, Picture]:
     """A wall with as many intensities as levels, evenly spaced, and a picture of it."""
-    seen = render(WALL, 48, 64).surface_number
+    seen = render(WALL, (64, 48)).surface_number
     relative = np.zeros(seen.shape, np.float32)
     relative[seen > 0] = np.arange(np.count_nonzero(seen)) % levels
     scene = WALL.with_surface("wall", levels=levels)
@@ -107,7 +107,7 @@ test_what_is_refused = refused(
         *(
             (
                 lambda text=text: size_of(text),
-                f"a size must be ELEMENTSxLINES, each from 1 to 4096, not {text!r}; write it as in 1280x960",
+                f"a size must be WIDTHxHEIGHT, each from 1 to 4096, not {text!r}; write it as in 1280x960",
             )
             for text in (
                 "",
@@ -140,9 +140,9 @@ test_what_is_refused = refused(
             " smooth=4",
         ),
         (
-            lambda: save_image(NOWHERE / "wall.png", WALL, WALL_PICTURE, smooth=3),
-            "the lines and elements of a picture must be multiples of smooth, 3, not 6 and 8; render with"
-            " smooth=3",
+            lambda: image(WALL, WALL_PICTURE, size=(8, 6)),
+            "a size must be for a scene without its picture, not for a picture of 8 x 6 pixels; leave one of"
+            " them out",
         ),
         (
             lambda: save_image(NOWHERE / "cube.jpg", WALL, WALL_PICTURE),
@@ -158,7 +158,7 @@ test_what_is_refused = refused(
             " or write the words themselves",
         ),
         (
-            lambda: save_words(NOWHERE / "z.png", SCALAR, render(SCALAR, 96, 128), indexed=True),
+            lambda: save_words(NOWHERE / "z.png", SCALAR, render(SCALAR, (128, 96)), indexed=True),
             "an indexed PNG must have at most 256 words in use, not 320; set `levels` of each surface to 255,"
             " choose fewer bands or shades of the scalar, or write the words themselves",
         ),
@@ -169,11 +169,11 @@ test_what_is_refused = refused(
         ),
         *(
             (
-                lambda size=size: send_picture(WALL, render(WALL, *size), Ramtek9300(SMALL)),
-                f"a picture must be at most 32 x 24, as large as the display, not {size[1]} x {size[0]};"
+                lambda size=size: send_picture(WALL, render(WALL, size), Ramtek9300(SMALL)),
+                f"a picture must be at most 32 x 24, as large as the display, not {size[0]} x {size[1]};"
                 " render it smaller, or take a larger configuration",
             )
-            for size in ((24, 33), (25, 32))
+            for size in ((33, 24), (32, 25))
         ),
     ],
 )
@@ -211,7 +211,7 @@ def test_a_saved_picture_is_sent_without_rendering() -> None:
 
 def test_a_picture_smaller_than_the_display_is_shown_at_its_upper_left() -> None:
     display = Ramtek9300(SMALL)
-    small = render(WALL, 12, 16)
+    small = render(WALL, (16, 12))
     send_picture(WALL, small, display)
     shown = display.words != 0
     assert (shown[:12, :16] == (small.surface_number != 0)).all()
@@ -221,7 +221,7 @@ def test_a_picture_smaller_than_the_display_is_shown_at_its_upper_left() -> None
 @pytest.mark.parametrize(
     ("text", "size"), [("640x480", (640, 480)), ("1X1", (1, 1)), ("4096x4096", (4096, 4096))]
 )
-def test_a_size_is_its_elements_and_its_lines(text: str, size: tuple[int, int]) -> None:
+def test_a_size_is_its_width_and_its_height(text: str, size: tuple[int, int]) -> None:
     assert size_of(text) == size
 
 
@@ -239,7 +239,7 @@ def component_of(light: float) -> int:
 
 def saved(path: Path, scene: Scene, lines: int, elements: int, smooth: int) -> Colors:
     """The colors of a saved image."""
-    picture = render(scene, smooth * lines, smooth * elements)
+    picture = render(scene, (smooth * elements, smooth * lines))
     save_image(path, scene, picture, overwrite=True, smooth=smooth)
     return np.asarray(Image.open(path))
 
@@ -250,7 +250,7 @@ def test_a_smooth_image_has_the_mean_light_of_the_squares_of_a_larger_image(
     tmp_path: Path, smooth: int, words: Any
 ) -> None:
     scene = CUBE.replace(words=words)
-    large = image(scene, render(scene, smooth * 12, smooth * 16))
+    large = image(scene, render(scene, (smooth * 16, smooth * 12)))
     squares = np.vectorize(light_of)(large).reshape(12, smooth, 16, smooth, 3)
     expected = np.vectorize(component_of)(squares.mean(axis=(1, 3)))
     colors = saved(tmp_path / "cube.png", scene, 12, 16, smooth)
@@ -263,7 +263,7 @@ def test_the_legend_of_a_smooth_image_is_as_sharp_as_on_a_display_of_its_size(tm
     lines, elements = 480, 640
     plain = saved(tmp_path / "plain.png", scene, lines, elements, 1)
     smooth = saved(tmp_path / "smooth.png", scene, lines, elements, 2)
-    key = legend(display_image(scene, render(scene, lines, elements)))
+    key = legend(display_image(scene, render(scene, (elements, lines))))
     assert key is not None
     left, top, right, bottom, _ = key.swatches[0]
     is_legend = np.zeros((lines, elements), np.bool_)
@@ -289,18 +289,27 @@ def test_averaging_takes_the_mean_light_of_each_square_whatever_is_done_at_once(
 
 
 def test_a_picture_has_its_smoothness_and_its_image_is_smooth_unless_another_is_asked_for() -> None:
-    smooth, plain = render(CUBE, 12, 16, smooth=4), render(CUBE, 48, 64)
+    smooth, plain = render(CUBE, (16, 12), smooth=4), render(CUBE, (64, 48))
     assert (smooth.smooth, plain.smooth) == (4, 1)
     assert (smooth.intensity == plain.intensity).all()
     assert (image(CUBE, smooth) == image(CUBE, plain, smooth=4)).all()
     assert image(CUBE, smooth).shape == (12, 16, 3)
+    assert (smooth.size, plain.size) == ((16, 12), (64, 48))
     assert (image(CUBE, smooth, smooth=1) == image(CUBE, plain)).all()
+
+
+def test_an_image_of_a_scene_is_smooth_by_2_unless_it_is_large(tmp_path: Path) -> None:
+    assert (image(CUBE) == image(CUBE, render(CUBE, (640, 480), smooth=2))).all()
+    save_image(tmp_path / "cube.png", CUBE, size=(16, 12))
+    assert (np.asarray(Image.open(tmp_path / "cube.png")) == image(CUBE, size=(16, 12), smooth=2)).all()
+    assert (image(CUBE, size=(16, 12), smooth=1) == image(CUBE, render(CUBE, (16, 12)))).all()
+    assert [default_smooth((width, 2500)) for width in (4000, 4001)] == [2, 1]
 
 
 @pytest.mark.parametrize("smooth", [2, 3])
 def test_a_display_shows_the_middle_of_each_square_of_a_smooth_picture(smooth: int) -> None:
     display = Ramtek9300(SMALL)
-    picture = render(CUBE, 24, 32, smooth=smooth)
+    picture = render(CUBE, (32, 24), smooth=smooth)
     send_picture(CUBE, picture, display)
     large = display_image(CUBE, picture).words
     assert (display.words == large[smooth // 2 :: smooth, smooth // 2 :: smooth]).all()
@@ -308,7 +317,7 @@ def test_a_display_shows_the_middle_of_each_square_of_a_smooth_picture(smooth: i
 
 def test_a_display_shows_the_legend_of_a_smooth_picture_at_its_own_size() -> None:
     scene = scene_of(cube(), scalar={"name": "z"})
-    picture, display = render(scene, 480, 640, smooth=2), Ramtek9300()
+    picture, display = render(scene, (640, 480), smooth=2), Ramtek9300()
     send_picture(scene, picture, display)
     large = display_image(scene, picture)
     assert (display.field() == shown_colors(dataclasses.replace(large, words=large.words[1::2, 1::2]))).all()
@@ -331,7 +340,7 @@ KINDS = [{}, {"words": "normals"}, {"scalar": Scalar("stress", bands=8, shades=4
 @pytest.mark.parametrize("changes", first(3, KINDS))
 def test_words_and_their_entries_are_read_back_from_a_png(tmp_path: Path, changes: dict[str, Any]) -> None:
     scene = car().replace(**changes)
-    picture = render(scene, 24, 32, smooth=2)
+    picture = render(scene, (32, 24), smooth=2)
     shown = display_image(scene, picture)
     path = tmp_path / "words.png"
     save_words(path, scene, picture)
@@ -355,7 +364,7 @@ def test_an_indexed_png_has_the_words_in_use_in_their_order(tmp_path: Path, chan
     scene = car().replace(**changes)
     for surface in scene.surfaces:
         scene = scene.with_surface(surface.name, levels=40)
-    picture = render(scene, 24, 32, smooth=2)
+    picture = render(scene, (32, 24), smooth=2)
     save_words(tmp_path / "words.png", scene, picture, indexed=True)
     words = display_image(scene, picture).words
     with Image.open(tmp_path / "words.png") as file:

@@ -32,7 +32,7 @@ def arrays_in(value: object, path: str = "") -> Iterator[tuple[str, np.ndarray[A
 def scene_and_picture() -> tuple[Scene, Picture]:
     """A scene and a picture of it, with everything computed that they keep."""
     scene = scene_of(cube())
-    picture = render(scene, 12, 16)
+    picture = render(scene, (16, 12))
     _ = scene.mesh.bounds, scene.object_coordinates, scene.view.axes
     _ = picture.intensity, picture.surface_number, picture.relative_ranges
     return scene, picture
@@ -60,7 +60,7 @@ def test_a_scene_from_a_pickle_renders_to_the_same_picture_and_is_edited() -> No
     scene, picture = scene_and_picture()
     again = pickle.loads(pickle.dumps(scene))
     assert again.lights == scene.lights
-    assert (render(again, 12, 16).intensity == picture.intensity).all()
+    assert (render(again, (16, 12)).intensity == picture.intensity).all()
     assert again.with_surface("surface", blend=0.25).surface("surface").paint.blend == 0.25
 
 

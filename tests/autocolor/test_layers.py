@@ -48,7 +48,7 @@ from autocolor.visibility.visible_points import Sight
 from tests.small import car, cube, wall_scene
 from tests.tables import first
 
-SIZE = (24, 32)
+SIZE = (32, 24)
 
 
 def car_with_named_lights() -> Scene:
@@ -67,7 +67,7 @@ def light_sum(channels: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
 
 @given(scenes())
 def test_the_layers_are_the_arrays_of_the_picture_and_its_points_and_the_lights_add_up(scene: Scene) -> None:
-    again = rendering(scene, *SIZE)
+    again = rendering(scene, 24, 32)
     picture, points = again.picture, again.points
     channels = layers_of(scene, picture).channels
     assert (channels["intensity.Y"] == picture.intensity).all()
@@ -95,7 +95,7 @@ def test_the_layers_are_the_arrays_of_the_picture_and_its_points_and_the_lights_
 
 def test_a_pixel_has_the_point_and_the_shares_of_its_explanation() -> None:
     scene = car_with_named_lights()
-    again = rendering(scene, *SIZE)
+    again = rendering(scene, 24, 32)
     channels = layers_of(scene, again.picture).channels
     shown = display_image(scene, again.picture)
     lit = 0
@@ -116,7 +116,7 @@ def test_a_pixel_has_the_point_and_the_shares_of_its_explanation() -> None:
 
 def test_the_colors_are_those_of_the_image_as_light_in_half_precision() -> None:
     scene = car()
-    picture = render(scene, *SIZE, smooth=2)
+    picture = render(scene, SIZE, smooth=2)
     channels = layers_of(scene, picture).channels
     light = np.stack([channels[name] for name in "RGB"], axis=-1)
     assert light.dtype == np.float16
@@ -128,11 +128,11 @@ def test_the_colors_are_those_of_the_image_as_light_in_half_precision() -> None:
 def test_the_layers_of_each_light_are_in_the_budget_and_need_not_fit_in_the_planes(count: int) -> None:
     lights = [Light(f"light {number}", (0.1 * number - 1, -3.0, 0.5)) for number in range(count)]
     scene = wall_scene(view=None).replace(lights=(*lights, Light("dark", (1, 1, 1), on=False)))
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     usual = layers_of(scene, picture).channels
     needed = (BYTES_OF_PIXEL + count * BYTES_OF_LIGHT) * SIZE[0] * SIZE[1]
     with allowing(1.001 * needed / MEMORY):
-        assert len(rendering(scene, *SIZE).picture.light_planes) < count or count == 2
+        assert len(rendering(scene, 24, 32).picture.light_planes) < count or count == 2
         channels = layers_of(scene, picture).channels
     assert channels.keys() == usual.keys()
     for name, values in channels.items():
@@ -144,7 +144,7 @@ def test_the_layers_of_each_light_are_in_the_budget_and_need_not_fit_in_the_plan
 
 def test_a_picture_that_sees_nothing_has_layers_of_zeros() -> None:
     scene = scene_of(cube()).with_view(eye=(0.0, -5.0, 0.0), direction=(0.0, -1.0, 0.0))
-    channels, attributes = layers_of(scene, render(scene, *SIZE))
+    channels, attributes = layers_of(scene, render(scene, SIZE))
     assert not any(values.any() for name, values in channels.items() if name not in "RGB")
     assert [json.loads(text) for name, text in attributes.items() if name.endswith("manifest")] == [{}, {}]
 
@@ -161,12 +161,12 @@ def test_a_picture_that_sees_nothing_has_layers_of_zeros() -> None:
 def test_a_picture_of_another_scene_is_refused(edit: Any) -> None:
     scene = car()
     with pytest.raises(InputError, match="must be computed from the scene that it was rendered from"):
-        layers_of(edit(scene), render(scene, *SIZE))
+        layers_of(edit(scene), render(scene, SIZE))
 
 
 def test_other_colors_and_another_mapping_are_the_same_layers() -> None:
     scene = car()
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     blue = scene.with_surface("body", object_color="#0000ff").replace(mapping="gamma")
     channels, others = layers_of(scene, picture).channels, layers_of(blue, picture).channels
     different = [name for name, values in channels.items() if (values != others[name]).any()]
@@ -233,7 +233,7 @@ def test_the_file_has_all_channels_and_attributes_bit_for_bit(tmp_path: Path) ->
     import OpenEXR
 
     scene = car_with_named_lights()
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     save_layers(tmp_path / "car.exr", scene, picture)
     file = OpenEXR.File(BytesIO((tmp_path / "car.exr").read_bytes()), separate_channels=True)
     channels, attributes = layers_of(scene, picture)
@@ -249,7 +249,7 @@ def test_the_file_has_all_channels_and_attributes_bit_for_bit(tmp_path: Path) ->
 @pytest.mark.parametrize("smooth", first(1, [2, 1]))
 def test_a_picture_from_a_file_has_the_same_layers(tmp_path: Path, smooth: int) -> None:
     scene = scene_of(cube(), scalar={"name": "z"})
-    picture = render(scene, *SIZE, smooth=smooth)
+    picture = render(scene, SIZE, smooth=smooth)
     write_picture(tmp_path / "cube.npz", picture=picture, scene=scene)
     saved = read_picture(tmp_path / "cube.npz")
     save_layers(tmp_path / "a.exr", scene, picture)
@@ -260,7 +260,7 @@ def test_a_picture_from_a_file_has_the_same_layers(tmp_path: Path, smooth: int) 
 @pytest.mark.needs("OpenEXR")
 def test_a_file_is_never_written_over_unasked_nor_under_another_suffix(tmp_path: Path) -> None:
     scene = scene_of(cube())
-    picture = render(scene, 6, 8)
+    picture = render(scene, (8, 6))
     path = tmp_path / "cube.exr"
     path.write_text("old")
     with pytest.raises(OutputError, match="exists"):
@@ -282,7 +282,7 @@ def test_without_a_library_that_is_new_enough_the_extra_is_named(
     monkeypatch.setitem(sys.modules, "OpenEXR", library)
     scene = scene_of(cube())
     with pytest.raises(UnavailableError) as caught:
-        save_layers(tmp_path / "cube.exr", scene, render(scene, 6, 8))
+        save_layers(tmp_path / "cube.exr", scene, render(scene, (8, 6)))
     assert str(caught.value) == (
         "to write layers, the package OpenEXR must be installed, at least version 3.5; run: pip install"
         ' "OpenEXR>=3.5"'

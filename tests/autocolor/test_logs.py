@@ -21,10 +21,10 @@ def test_when_memory_runs_out_the_innermost_stage_is_noted() -> None:
 
 def test_what_is_created_and_each_stage_of_a_rendering_are_told(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.WARNING, "autocolor"):
-        render(scene_of(cube()), 20, 30)
+        render(scene_of(cube()), (30, 20))
     assert caplog.messages == []
     with caplog.at_level(logging.INFO, "autocolor"):
-        render(scene_of(cube()), 20, 30)
+        render(scene_of(cube()), (30, 20))
     told = [re.sub(r"\(.*\)|\d+\.\d ms$", "...", message) for message in caplog.messages]
     assert told == [
         "created a view from ...",
@@ -48,7 +48,7 @@ def test_a_stage_is_told_with_its_milliseconds(
 
 def test_the_library_says_nothing_unless_asked() -> None:
     code = (
-        "import logging, autocolor; autocolor.render(autocolor.read_scene('scenes/pyramid'), 20, 30);"
+        "import logging, autocolor; autocolor.render(autocolor.read_scene('scenes/pyramid'), (30, 20));"
         "print(logging.getLogger('autocolor').handlers)"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)

@@ -102,13 +102,13 @@ def in_color(scene: Scene) -> Scene:
 
 def test_a_scalar_has_a_raster_and_a_range() -> None:
     scene = in_color(two_surfaces())
-    picture = render(scene, 24, 32)
+    picture = render(scene, (32, 24))
     assert picture.scalar is not None
     assert picture.scalar.dtype == np.float32
     assert np.array_equal(np.isnan(picture.scalar), picture.surface_number == 0)
     assert picture.scalar_limits == pytest.approx((-1, 1.2))
     assert not picture.scalar.flags.writeable
-    without = render(two_surfaces(), 24, 32)
+    without = render(two_surfaces(), (32, 24))
     assert (without.scalar, without.scalar_values, without.scalar_limits) == (None, None, None)
     assert picture.intensity.tobytes() == without.intensity.tobytes()
 
@@ -136,7 +136,7 @@ def test_reuse_gives_the_same_picture_as_a_fresh_rendering(
     scene = in_color(two_surfaces())
     _, after = edited(scene, edit)
     assert (len(after.points.chunks) > 3) == (at_once == 37)
-    assert raw(after.picture) == raw(render(edit(scene), 24, 32))
+    assert raw(after.picture) == raw(render(edit(scene), (32, 24)))
 
 
 def test_a_scalar_that_comes_and_goes_leaves_the_light() -> None:
@@ -160,7 +160,7 @@ def test_the_mix_of_lights_that_stay_is_reused_while_a_light_is_dragged() -> Non
     for step in (1, 2, 3):
         scene = first.scene.with_light("key", position=(4, -3, step))
         dragged.append(rendering(scene, 24, 32, dragged[-1]))
-        assert dragged[-1].picture.intensity.tobytes() == render(scene, 24, 32).intensity.tobytes()
+        assert dragged[-1].picture.intensity.tobytes() == render(scene, (32, 24)).intensity.tobytes()
     for light in first.scene.lights:
         mixed = [each.picture.light_planes[light.name].mixed for each in dragged]
         assert mixed[0] is None
@@ -197,7 +197,7 @@ def test_an_exponent_computes_its_own_surface_again_and_no_other() -> None:
 def test_any_scene_after_any_other_gives_the_same_picture_as_a_fresh_one(one: Scene, other: Scene) -> None:
     mixed = other.replace(mesh=one.mesh, view=one.view)
     after = rendering(mixed, 9, 12, rendering(one, 9, 12))
-    assert raw(after.picture) == raw(render(mixed, 9, 12))
+    assert raw(after.picture) == raw(render(mixed, (12, 9)))
 
 
 def test_a_light_that_was_off_is_computed_when_it_is_switched_on() -> None:
@@ -205,33 +205,38 @@ def test_a_light_that_was_off_is_computed_when_it_is_switched_on() -> None:
     before = rendering(dark, 24, 32)
     assert "key" not in before.picture.light_planes
     lit = rendering(dark.with_light("key", on=True), 24, 32, before)
-    assert lit.picture.intensity.tobytes() == render(two_surfaces(), 24, 32).intensity.tobytes()
+    assert lit.picture.intensity.tobytes() == render(two_surfaces(), (32, 24)).intensity.tobytes()
 
 
 @given(scenes(), st.tuples(st.integers(1, 12), st.integers(1, 12)))
-def test_the_literal_watkins_gives_the_same_picture(scene: Scene, raster: tuple[int, int]) -> None:
-    batch, literal = (render(scene, *raster, algorithm=each) for each in ("batch", "watkins"))
+def test_the_literal_watkins_gives_the_same_picture(scene: Scene, size: tuple[int, int]) -> None:
+    batch, literal = (render(scene, size, algorithm=each) for each in ("batch", "watkins"))
     assert raw(batch) == raw(literal)
 
 
 @pytest.mark.parametrize("size", [(1, 16384), (16384, 1), (1, 1)])
 def test_a_raster_may_have_16384_lines_or_elements(size: tuple[int, int]) -> None:
-    assert render(two_surfaces(), *size).intensity.shape == size
+    assert render(two_surfaces(), size).intensity.shape == size[::-1]
 
 
 test_what_is_refused = refused(
-    lambda given: render(wall_scene(), *given[:2], **given[2]),
+    lambda options: render(wall_scene(), **options),
     [
-        ((0, 9, {}), "lines must be a whole number from 1 to 16384, not 0; choose another"),
-        ((2.5, 9, {}), "lines must be a whole number from 1 to 16384, not 2.5; choose another"),
-        ((16385, 9, {}), "lines must be a whole number from 1 to 16384, not 16385; choose another"),
-        ((9, 16385, {}), "elements must be a whole number from 1 to 16384, not 16385; choose another"),
-        ((9, 9, {"smooth": 0}), "smooth must be a whole number from 1 to 64, not 0; give one such as 4"),
-        (
-            (4097, 4, {"smooth": 4}),
-            "lines must be a whole number from 1 to 4096 where smooth is 4, not 4097; choose another",
+        *(
+            (
+                {"size": size},
+                f"a size must be (width, height), each from 1 to 16384, not {size!r}; write it as in"
+                " (640, 480)",
+            )
+            for size in (480, "640x480", None, (640,), (9, 0), (2.5, 9), (16385, 9), (9, 16385))
         ),
-        ((4, 4, {"algorithm": "watkin"}), "there is no algorithm 'watkin'; did you mean 'watkins'?"),
+        ({"smooth": 0}, "smooth must be a whole number from 1 to 64, not 0; give one such as 4"),
+        (
+            {"size": (4, 4097), "smooth": 4},
+            "a size must be (width, height), each from 1 to 4096 where smooth is 4, not (4, 4097); write it"
+            " as in (640, 480)",
+        ),
+        ({"algorithm": "watkin"}, "there is no algorithm 'watkin'; did you mean 'watkins'?"),
     ],
 )
 

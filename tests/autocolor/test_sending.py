@@ -16,7 +16,7 @@ from tests.small import wall_scene
 
 @pytest.mark.parametrize("display", ["tcp://127.0.0.1:9300", None, Ramtek9300])
 def test_what_is_no_display_is_refused_in_words(display: Any) -> None:
-    for send in (Studio, lambda scene, to: send_picture(scene, render(scene, 24, 32), to)):
+    for send in (Studio, lambda scene, to: send_picture(scene, render(scene, (32, 24)), to)):
         with pytest.raises(
             UsageError, match=r"a display must be a host port, such as Ramtek9300\(\), or TcpPort"
         ):
@@ -31,7 +31,7 @@ def test_the_words_and_colors_of_an_image_with_a_legend_are_those_of_its_display
     send_image(display, shown)
     assert np.array_equal(shown_words(shown), display.words)
     assert np.array_equal(shown_colors(shown), display.field())
-    plain = display_image(wall_scene(), render(wall_scene(), 60, 80))
+    plain = display_image(wall_scene(), render(wall_scene(), (80, 60)))
     assert np.array_equal(shown_colors(plain), plain.colors)
 
 

@@ -73,7 +73,7 @@ def outside_mesh(path: Path) -> None:
 def outside_picture(path: Path) -> None:
     """Another program writes a picture file."""
     scene = read_picture(path).scene.with_view(angle=7)
-    write_picture(path, scene, render(scene, 24, 32), overwrite=True)
+    write_picture(path, scene, render(scene, (32, 24)), overwrite=True)
 
 
 OPEN: list[sqlite3.Connection] = []
@@ -89,7 +89,7 @@ OUTSIDE = {
 def write(path: Path, scene: Scene) -> None:
     """Write a file of any of these kinds."""
     if path.suffix == ".npz":
-        write_picture(path, scene, render(scene, 24, 32), overwrite=True)
+        write_picture(path, scene, render(scene, (32, 24)), overwrite=True)
     else:
         autocolor.write_scene(path, scene, overwrite=True)
 

@@ -104,7 +104,7 @@ def test_a_recoloring_of_a_scene_and_of_a_studio_are_the_same(recoloring: Recolo
 def test_a_recoloring_moves_no_word_and_no_entry_of_another_surface(
     scene: Scene, recoloring: Recoloring
 ) -> None:
-    for picture in (None, render(scene, 9, 12)):
+    for picture in (None, render(scene, (12, 9))):
         check_recoloring_moves_no_word(scene, recoloring, picture=picture)
         check_entries_outside_range_stay(scene, recoloring, recoloring.surface, picture=picture)
 
@@ -148,7 +148,7 @@ def test_words_of_a_picture_that_move_are_told_of_its_own_size() -> None:
     def few_levels(scene: Scene) -> Scene:
         return scene.with_surface("body", levels=2)
 
-    picture = render(car(), 12, 16)
+    picture = render(car(), (16, 12))
     text = message_of(lambda: check_recoloring_moves_no_word(car(), few_levels, picture=picture))
     assert " of 192 words moved" in text
     text = message_of(lambda: check_recoloring_moves_no_word(car(), darker, picture=picture))
@@ -228,7 +228,7 @@ test_wrong_calls_of_the_checks_are_refused = refused(
             "an edit of a scene must return the edited Scene, not None",
         ),
         (
-            lambda: check_recoloring_moves_no_word(opened()[0], darker, picture=render(car(), 2, 2)),
+            lambda: check_recoloring_moves_no_word(opened()[0], darker, picture=render(car(), (2, 2))),
             "a picture must come with its scene; leave it out, a studio has its own picture",
         ),
         (
@@ -236,7 +236,7 @@ test_wrong_calls_of_the_checks_are_refused = refused(
             "there is no surface 'bodi'; did you mean 'body'?",
         ),
         (
-            lambda: check_recoloring_moves_no_word(car(), darker, picture=render(scene_of(cube()), 2, 2)),
+            lambda: check_recoloring_moves_no_word(car(), darker, picture=render(scene_of(cube()), (2, 2))),
             "the surfaces of a picture must be those of the scene, ['body', 'glass', 'wheels'], not"
             " ['surface']; render this scene, or use the scene that was rendered",
         ),

@@ -135,7 +135,7 @@ def test_the_views_of_figure_5_show_the_object_and_marks_for_all_lights_and_the_
 def test_under_a_light_at_the_eye_the_body_of_the_coupe_is_about_as_bright_as_under_four_lights() -> None:
     medians = []
     for scene in (figures.read_scene("coupe"), figure_07.coupe()):
-        picture = autocolor.render(scene, 240, 320)
+        picture = autocolor.render(scene, (320, 240))
         body = picture.surface_number == picture.surfaces.index("body") + 1
         medians.append(np.median(autocolor.image(scene, picture)[body].max(axis=1)))
     assert medians[1] > 0.8 * medians[0]
@@ -147,11 +147,11 @@ def test_no_panel_of_lacquer_is_brighter_than_the_range_of_all_panels() -> None:
     ((_, (_, most)),) = coupe.exposure
     for position in (coupe.view.eye, figure_incidence.BEHIND):
         lacquered = figure_incidence.lacquered(coupe.with_light("lamp", position=position))
-        assert autocolor.render(lacquered, 960, 1280).ranges.whole.maximum < most
+        assert autocolor.render(lacquered, (1280, 960)).ranges.whole.maximum < most
 
 
 def brightest_of_plane(scene: autocolor.Scene) -> float:
-    picture = autocolor.render(scene, 240, 320)
+    picture = autocolor.render(scene, (320, 240))
     return picture.ranges.surfaces["plane"].maximum
 
 
@@ -162,8 +162,8 @@ def test_aiming_the_light_at_the_pyramid_takes_the_bright_spot_off_the_plane() -
     assert point.light("lamp").axis is None
     assert brightest_of_plane(flood) < 0.5 * brightest_of_plane(point)
     assert brightest_of_plane(spot) < 0.2 * brightest_of_plane(point)
-    side = autocolor.render(spot, 240, 320).ranges.surfaces["pyramid"]
-    assert side.maximum > 0.9 * autocolor.render(flood, 240, 320).ranges.surfaces["pyramid"].maximum
+    side = autocolor.render(spot, (320, 240)).ranges.surfaces["pyramid"]
+    assert side.maximum > 0.9 * autocolor.render(flood, (320, 240)).ranges.surfaces["pyramid"].maximum
 
 
 def test_the_three_blends_of_figure_15_differ_only_in_the_body() -> None:
@@ -244,9 +244,9 @@ def test_under_a_light_at_the_eye_the_glass_of_the_coupe_is_darker_than_its_pain
 
 def test_the_panels_of_the_links_differ_from_that_of_everything_only_where_the_light_is_not() -> None:
     coupe = figure_links.coupe()
-    every = autocolor.render(coupe, 240, 320)
+    every = autocolor.render(coupe, (320, 240))
     for _, links, _ in figure_links.ON_THE_COUPE[1:]:
-        picture = autocolor.render(coupe.with_light("more", **links), 240, 320)
+        picture = autocolor.render(coupe.with_light("more", **links), (320, 240))
         names = links.get("only_parts") or links["only_surfaces"]
         of = ("part_number", "parts") if "only_parts" in links else ("surface_number", "surfaces")
         numbers, known = (getattr(picture, field) for field in of)
@@ -260,7 +260,7 @@ def test_the_panels_of_the_links_differ_from_that_of_everything_only_where_the_l
 def test_without_the_lamp_on_the_plane_the_bright_spot_of_figure_4_is_gone_and_the_side_stays() -> None:
     point = autocolor.read_scene(figures.SCENES / "pyramid")
     linked = point.with_light("lamp", **figure_links.ON_THE_PYRAMID[1][1])
-    before, after = (autocolor.render(scene, 240, 320).ranges.surfaces for scene in (point, linked))
+    before, after = (autocolor.render(scene, (320, 240)).ranges.surfaces for scene in (point, linked))
     assert after["plane"].maximum == after["plane"].minimum == pytest.approx(point.ambient)
     assert after["pyramid"].maximum == pytest.approx(before["pyramid"].maximum)
 
@@ -282,7 +282,7 @@ def test_the_bands_of_the_machined_part_keep_its_shading_and_flat_codes_do_not()
 
 def test_the_stress_of_the_part_is_largest_on_its_rib_among_what_is_seen_of_the_cast_surface() -> None:
     bracket = autocolor.read_scene(figures.SCENES / "bracket").with_scalar(**figure_part.STRESS)
-    picture = autocolor.render(bracket, 240, 320)
+    picture = autocolor.render(bracket, (320, 240))
     assert picture.scalar is not None
     is_metal = np.isin(
         picture.surface_number, [picture.surfaces.index(name) + 1 for name in ("cast", "machined")]
@@ -319,7 +319,7 @@ def test_the_lacquer_of_the_coupe_and_the_wet_floor_shine_under_the_lamp_behind_
         grown = scene
         for name in figure_incidence.SURFACES:
             grown = grown.with_surface(name, refractive_index=figure_incidence.LACQUER)
-        constant, more = (autocolor.render(each, 240, 320) for each in (scene, grown))
+        constant, more = (autocolor.render(each, (320, 240)) for each in (scene, grown))
         for name in figure_incidence.SURFACES:
             is_there = constant.surface_number == constant.surfaces.index(name) + 1
             brightest = [float(picture.intensity[is_there].max()) for picture in (constant, more)]
@@ -332,7 +332,7 @@ def test_the_lacquer_of_the_coupe_and_the_wet_floor_shine_under_the_lamp_behind_
 def test_a_lacquered_plane_shines_more_where_the_lamp_behind_the_pyramid_grazes_it() -> None:
     constant = figure_incidence.lit_pyramid()
     grown = constant.with_surface("plane", refractive_index=figure_incidence.LACQUER)
-    pictures = [autocolor.render(each, 240, 320) for each in (constant, grown)]
+    pictures = [autocolor.render(each, (320, 240)) for each in (constant, grown)]
     is_plane = pictures[0].surface_number == pictures[0].surfaces.index("plane") + 1
     times = pictures[1].intensity[is_plane] / pictures[0].intensity[is_plane]
     assert times.max() > 2
@@ -375,7 +375,7 @@ def test_the_barn_doors_of_the_figure_leave_a_part_of_what_the_lamp_lights() -> 
     opened = pyramid.with_light(
         "lamp", half_spaces=[each.replace(on=False) for each in figure_half_spaces.DOORS]
     )
-    free, doors, off = (autocolor.render(each, 120, 160).intensity for each in (pyramid, behind, opened))
+    free, doors, off = (autocolor.render(each, (160, 120)).intensity for each in (pyramid, behind, opened))
     assert off.tobytes() == free.tobytes()
     lit = doors > 0
     assert doors[lit].tolist() == free[lit].tolist()

@@ -40,12 +40,13 @@ COLOR, POSITION = f"surfaces.{SCENE.parts[0].surface}.object_color", "lights.key
 FADE = frames(SCENE, [{COLOR: "red"}, {COLOR: "blue"}, {COLOR: "red"}], 6)
 SWEEP = frames(SCENE, [{POSITION: [-4, -4, 3]}, {POSITION: [4, -4, 3]}], 5)
 AROUND = frames(SCENE, [], 4, turn=360)
+SMOOTH = render(SCENE, SIZE, smooth=2)
 
 
 def rendered(scene: Scene, made: tuple[Variant, ...]) -> list[Bytes]:
     """The colors of frames, each rendered by itself."""
     scenes = [scene_with(scene, frame.settings) for frame in made]
-    return [image(each, render(each, SIZE[1], SIZE[0])) for each in scenes]
+    return [image(each, size=SIZE) for each in scenes]
 
 
 @pytest.fixture
@@ -93,7 +94,7 @@ def test_a_frame_costs_its_edit_from_the_frame_before(
 
 
 def test_a_picture_alone_is_animated_without_rendering(visible: list[object], tmp_path: Path) -> None:
-    picture = render(SCENE, 2 * SIZE[1], 2 * SIZE[0], smooth=1)
+    picture = render(SCENE, (2 * SIZE[0], 2 * SIZE[1]), smooth=1)
     visible.clear()
     animate((SCENE, picture), FADE, tmp_path / "film.webp")
     assert visible == []
@@ -246,5 +247,7 @@ def test_a_wrong_name_or_rate_is_refused_before_anything_is_rendered(
         animate(SCENE, FADE, tmp_path / name, **options)
     assert sentence in str(refusal.value)
     assert visible == []
+    with pytest.raises(UsageError, match="a stream must have smooth=1"):
+        animate((SCENE, SMOOTH), FADE, tmp_path / "film.ramtek")
     with pytest.raises(UsageError, match="an animation must have at least one frame, not none"):
         animate(SCENE, [], tmp_path / "film.webp")

@@ -111,7 +111,7 @@ def test_the_pictures_are_those_of_each_scene_rendered_alone_in_the_order_of_the
     assert [result.name for result in results] == [variant.name for variant in GRID]
     for result, variant in zip(results, GRID, strict=True):
         edited = scene_with(scene, variant.settings)
-        assert np.array_equal(result.image, image(edited, render(edited, 12, 16)))  # type: ignore[arg-type]
+        assert np.array_equal(result.image, image(edited, size=SIZE))  # type: ignore[arg-type]
     # Each of two frames is rendered once and relit once, for three paints.
     tiers = [result.tier for result in results]
     assert sorted(tiers) == [Tier.ENTRIES] * 8 + [Tier.MIX] * 2 + [Tier.FRAME] * 2  # type: ignore[type-var]
@@ -128,7 +128,7 @@ def test_any_executor_gives_the_same_bytes() -> None:
 @pytest.mark.filterwarnings("ignore::autocolor.batches.making.VariantWarning")
 def test_processes_give_the_same_bytes_from_a_scene_and_from_a_picture() -> None:
     scene = wall_scene()
-    source = scene, render(scene, 12, 16)
+    source = scene, render(scene, (16, 12))
     variants = [*GRID, Variant("bad", {"ambient": -1})]
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as processes:
         for given, rows in ((scene, variants), (scene, PAINTS), (source, PAINTS)):
@@ -268,7 +268,7 @@ def test_what_differs_is_made_again_and_nothing_else(tmp_path: Path) -> None:
     assert [number for number, result in enumerate(results, 1) if result.was_made] == [7]
     assert made(scene.replace(ambient=0.3), rows) == everything
     assert made(scene.replace(ambient=0.3), rows, level=9) == everything
-    assert made(scene.replace(ambient=0.3), rows, smooth=2, level=9) == everything
+    assert made(scene.replace(ambient=0.3), rows, smooth=1, level=9) == everything
 
 
 @pytest.mark.filterwarnings("ignore::autocolor.batches.making.VariantWarning")
@@ -316,7 +316,7 @@ def test_one_bad_variant_is_in_the_table_and_loses_no_other(tmp_path: Path) -> N
 def test_a_batch_starts_from_a_path_of_a_picture_or_a_scene(tmp_path: Path) -> None:
     scene = wall_scene()
     path = tmp_path / "wall.npz"
-    write_picture(path, scene, render(scene, 12, 16, smooth=2))
+    write_picture(path, scene, render(scene, (16, 12), smooth=2))
     saved = read_picture(path)
     expected = images(batch((saved.scene, saved.picture), PAINTS, form="png"))
     assert images(batch(str(path), PAINTS, form="png")) == expected
@@ -328,7 +328,7 @@ def test_a_batch_starts_from_a_path_of_a_picture_or_a_scene(tmp_path: Path) -> N
             batch(saved, PAINTS, size=size, smooth=smooth)
     colors = batch(path, PAINTS[:1])[0].image
     edited = scene_with(scene, PAINTS[0].settings)
-    assert np.array_equal(colors, image(edited, render(edited, 12, 16, smooth=2)))  # type: ignore[arg-type]
+    assert np.array_equal(colors, image(edited, size=SIZE))  # type: ignore[arg-type]
 
 
 class Broken(Executor):
@@ -432,8 +432,8 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     yield {"output": "same.png"}, UsageError, "a name pattern must give each variant a file of its own"
     yield {"output": "a.jpg"}, UsageError, "the pictures of a batch must be written to files that end in"
     yield {"executor": 2}, UsageError, "an executor must be one of concurrent.futures or the like, not 2"
-    yield {"size": (16,)}, UsageError, "the size of pictures must be elements and lines, each from 1 to 16384"
-    yield {"size": (16, 9999), "smooth": 2}, UsageError, "the size of pictures must be elements and lines"
+    yield {"size": (16,)}, UsageError, "a size must be (width, height), each from 1 to 16384"
+    yield {"size": (16, 9999)}, UsageError, "a size must be (width, height), each from 1 to 8192 where smooth"
     yield {"smooth": 0}, UsageError, "smooth must be a whole number from 1 to 64, not 0"
     yield {"level": 10}, UsageError, "level must be a whole number from 0 to 9, not 10"
     yield {"resume": True}, UsageError, "only a batch with an output can be resumed"
@@ -442,12 +442,12 @@ def refused() -> Iterator[tuple[dict[str, Any], type[Exception], str]]:
     same = {"output": "{number}.png", "sheet": "25.PNG"}
     yield same, UsageError, "a contact sheet must have a file of its own, not 25.PNG, a picture's; rename it"
     yield {"source": 3}, UsageError, "a scene must be a Scene, not 3"
-    yield {"source": (render(scene, 3, 4), scene)}, UsageError, "the scene must come before the picture"
+    yield {"source": (render(scene, (4, 3)), scene)}, UsageError, "the scene must come before the picture"
     yield {"source": "no.npz"}, InputError, "no.npz"
-    other = {"source": (scene, render(scene, 3, 4)), "size": (8, 6)}
+    other = {"source": (scene, render(scene, (4, 3))), "size": (8, 6)}
     yield other, UsageError, "the size and smooth of a batch"
-    yield {"size": 640}, UsageError, "the size of pictures must be elements and lines"
-    yield {"source": (scene, render(scene, 3, 4)), "size": 4}, UsageError, "the size and smooth of a batch"
+    yield {"size": 640}, UsageError, "a size must be (width, height)"
+    yield {"source": (scene, render(scene, (4, 3))), "size": 4}, UsageError, "a size must be (width, height)"
     yield {"executor": ThreadPoolExecutor}, UsageError, "an executor must be one of concurrent.futures"
     deep = {"output": "d/" * 1500 + "{name}.png"}
     yield deep, UsageError, "the path of a picture must have at most 1,024 characters, not 3,0"

@@ -179,14 +179,14 @@ def stressed(*stress: float, name: str = "stress") -> Scene:
 )
 def test_a_change_of_mesh_scalar_or_table_changes_the_mark(base: Scene, changed: Scene) -> None:
     assert base_mark(base, None, ()) != base_mark(changed, None, ())
-    pictures = [render(scene, 6, 8) for scene in (base, base.replace(ambient=0.7), base.with_view(angle=9))]
+    pictures = [render(scene, (8, 6)) for scene in (base, base.replace(ambient=0.7), base.with_view(angle=9))]
     marks = {base_mark(base, picture, drawn) for picture in (None, *pictures) for drawn in ((), (1,))}
     assert len(marks) == 8
 
 
 def test_the_mark_of_a_picture_has_the_values_of_its_scalar() -> None:
     scene = stressed(1, 2, 3, 4).with_scalar(name="stress")
-    picture = render(scene, 6, 8)
+    picture = render(scene, (8, 6))
     assert picture.scalar_values is not None
     other = dataclasses.replace(picture, scalar_values=picture.scalar_values + 1)
     assert base_mark(scene, picture, ()) != base_mark(scene, other, ())

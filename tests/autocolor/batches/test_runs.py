@@ -38,7 +38,7 @@ SMALL = Drawing(12, 16, 1, "array", None, None, 1.0)
 
 def alone(scene: Scene, drawing: Drawing = SMALL) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
     """The colors of a scene that is rendered by itself."""
-    return image(scene, render(scene, drawing.lines, drawing.elements, smooth=drawing.smooth))
+    return image(scene, size=(drawing.elements, drawing.lines), smooth=drawing.smooth)
 
 
 @given(st.lists(SETTINGS, min_size=1, max_size=5), st.sampled_from([1, 2]), st.booleans())
@@ -47,7 +47,7 @@ def test_each_picture_of_a_run_is_that_of_its_scene_rendered_alone(
 ) -> None:
     drawing = SMALL._replace(smooth=smooth)
     scene = wall_scene()
-    picture = render(scene, 12, 16, smooth=smooth) if has_picture else None
+    picture = render(scene, (16, 12), smooth=smooth) if has_picture else None
     tasks = [VariantTask(number, settings, "") for number, settings in enumerate(variants)]
     results = make_run(Start(scene, picture), drawing, tasks)
     assert [made.number for made in results] == list(range(len(variants)))
@@ -85,7 +85,7 @@ def test_light_moves_see_the_points_once_and_recolorings_of_a_picture_render_not
     paints = [
         VariantTask(n, {"surfaces.wall.object_color": [n, n, n], "mapping": "gamma"}, "") for n in range(5)
     ]
-    make_run(Start(scene, render(scene, 12, 16)), SMALL, paints)
+    make_run(Start(scene, render(scene, (16, 12))), SMALL, paints)
     assert (counted.renderings, counted.frames) == (5, 1)
 
 
@@ -94,7 +94,7 @@ def test_a_picture_is_rendered_again_only_where_a_variant_changes_the_light(
 ) -> None:
     counted = Counted(monkeypatch)
     scene = wall_scene()
-    start = Start(scene, render(scene, 12, 16))
+    start = Start(scene, render(scene, (16, 12)))
     settings: list[dict[str, object]] = [{}, {"ambient": 0.5}, {"ambient": 0.6}, {"background": "red"}]
     made = [make(start, SMALL, VariantTask(n, each, "")) for n, each in enumerate(settings)]
     assert (counted.renderings, counted.frames) == (2, 1)
@@ -104,7 +104,7 @@ def test_a_picture_is_rendered_again_only_where_a_variant_changes_the_light(
 def test_words_that_stand_for_normals_need_a_rendering_of_a_picture() -> None:
     scene = scene_of(cube(), view=View((3.0, -4.0, 2.0), target=(0.5, 0.5, 0.5)))
     settings = {"words": "normals", "lights.key.position": [2, -3, 4]}
-    picture = render(scene_with(scene, {**settings, "words": "levels"}), 12, 16)
+    picture = render(scene_with(scene, {**settings, "words": "levels"}), (16, 12))
     start = Start(scene_with(scene, {**settings, "words": "levels"}), picture)
     made = make(start, SMALL, VariantTask(0, {"words": "normals"}, ""))
     assert np.array_equal(made.image, alone(scene_with(scene, settings)))  # type: ignore[arg-type]
@@ -149,7 +149,7 @@ def test_the_forms_and_thumbnails_are_those_of_the_colors() -> None:
 
 def test_a_start_travels_once_to_a_process_without_light_planes() -> None:
     scene = wall_scene()
-    start = Start(scene, render(scene, 12, 16))
+    start = Start(scene, render(scene, (16, 12)))
     arrived = pickle.loads(pickle.dumps(start))
     assert arrived is not start
     assert pickle.loads(pickle.dumps(start)) is arrived

@@ -22,7 +22,7 @@ def test_lists_run_together_and_a_loop_comes_back(folder: Path, run: Run) -> Non
     expected = [("red", "#000000"), ("#800080", "#808080"), ("blue", "#ffffff"), ("#800080", "#808080")]
     for shown, (paint, background) in zip(decoded("a.apng"), expected, strict=True):
         frame = scene_with(scene, {PAINT: paint, "background": background})
-        assert np.array_equal(shown, image(frame, render(frame, 24, 32)))
+        assert np.array_equal(shown, image(frame, render(frame, (32, 24))))
 
 
 def test_a_picture_file_cycles_its_colors_without_its_mesh(saved: Path, run: Run, refused: Refused) -> None:

@@ -77,7 +77,7 @@ def test_an_absolute_path_is_completed(crowded: Path) -> None:
 
 def test_a_picture_and_its_surfaces_are_completed(folder: Path) -> None:
     scene = read_scene("scene")
-    write_picture("saved.npz", scene, render(scene, 20, 30))
+    write_picture("saved.npz", scene, render(scene, (30, 20)))
     assert completed("recolor", "") == ["saved.npz", "scene/"]
     assert completed("recolor", "saved.npz", "") == ["front.low", "side"]
     assert completed("recolor", "saved.npz", "s") == ["side"]

@@ -23,7 +23,7 @@ def test_json_has_the_intensity_of_the_picture_with_its_settings_and_size(folder
     ran = run("explain", "scene", "12", "16", "--size", "32x24", "--set", "ambient=0.5", "--json")
     assert (ran.code, ran.err) == (0, "")
     facts = json.loads(ran.out)
-    intensity = render(read_scene("scene").replace(ambient=0.5), 24, 32).intensity[12, 16]
+    intensity = render(read_scene("scene").replace(ambient=0.5), (32, 24)).intensity[12, 16]
     assert facts["ambient"] == 0.5
     assert facts["intensity"] == pytest.approx(float(intensity), rel=1e-5)
     assert sorted(light["name"] for light in facts["lights"]) == ["key", "key.2"]

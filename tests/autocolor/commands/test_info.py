@@ -49,7 +49,7 @@ def test_json_has_the_same_facts(folder: Path, run: Run) -> None:
 
 def told(run: Run, scene: Scene, *options: str) -> str:
     """What is printed about a picture file of a scene."""
-    write_picture("wall.npz", scene, render(scene, 24, 32), overwrite=True)
+    write_picture("wall.npz", scene, render(scene, (32, 24)), overwrite=True)
     return run("info", "wall.npz", *options).out
 
 

@@ -23,7 +23,7 @@ def picture_in(path: str) -> Any:
 def test_a_picture_becomes_a_page_without_its_mesh(saved: Path, run: Run) -> None:
     (saved.parent / "scene" / "two.obj").unlink()
     assert run("page", "scene.npz") == (0, "", "wrote scene.html\n")
-    picture, scene = read_picture(saved)
+    scene, picture = read_picture(saved)
     save_page("python.html", scene, picture)
     assert is_same("scene.html", "python.html")
     values = picture_in("scene.html")

@@ -15,7 +15,7 @@ from tests.autocolor.commands.conftest import Refused, Run
 def test_the_entries_of_a_picture_are_written_without_its_mesh(saved: Path, run: Run, suffix: str) -> None:
     (saved.parent / "scene" / "two.obj").unlink()
     assert run("palette", "scene.npz", "side", "-o", f"side{suffix}") == (0, "", f"wrote side{suffix}\n")
-    picture, scene = read_picture(saved)
+    scene, picture = read_picture(saved)
     image = display_image(scene, picture)
     first, levels = image.ranges["side"]
     assert np.array_equal(read_palette(f"side{suffix}").colors, image.entries[first : first + levels])

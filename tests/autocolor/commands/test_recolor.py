@@ -95,7 +95,7 @@ def named(name: str) -> Scene:
 
 def test_the_surface_s_name_in_the_output_s_is_made_one_of_a_file(folder: Path, run: Run) -> None:
     scene = named("a/b")
-    write_picture("wall.npz", scene, render(scene, 24, 32))
+    write_picture("wall.npz", scene, render(scene, (32, 24)))
     assert run("recolor", "wall.npz", "a/b").err == "wrote wall-b.png\n"
     assert run("recolor", "wall.npz", *settings("mapping=gamma")).err == "wrote wall-recolored.png\n"
 

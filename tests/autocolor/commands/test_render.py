@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, demo, image, images, read_picture, read_scene, render, write_scene
-from autocolor.commands.options import smooth_of
+from autocolor import Studio, demo, image, images, read_picture, read_scene, write_scene
 from autocolor.commands.render import render as command
-from autocolor.images import SMOOTHNESS, SMOOTHNESSES
+from autocolor.images import SMOOTHNESSES
 from ramtek_emu import Ramtek9300
 from tests.autocolor.commands.conftest import ROOT, SMALL, Refused, Run, is_same, pixels
 
@@ -23,7 +22,7 @@ from tests.autocolor.commands.conftest import ROOT, SMALL, Refused, Run, is_same
 def test_a_bare_mesh_becomes_a_picture_of_its_name(folder: Path, run: Run) -> None:
     assert run("render", "two.obj") == (0, "", "wrote two.png\n")
     scene = read_scene("two.obj")
-    assert (pixels("two.png") == image(scene, render(scene, smooth=2))).all()
+    assert (pixels("two.png") == image(scene)).all()
 
 
 def test_without_smooth_edges_a_picture_is_the_field_of_a_display(folder: Path, run: Run) -> None:
@@ -36,7 +35,7 @@ def test_without_smooth_edges_a_picture_is_the_field_of_a_display(folder: Path, 
 def test_without_a_scene_the_demo_is_rendered(folder: Path, run: Run, refused: Refused) -> None:
     assert run("render", *SMALL, "--save", "new.npz") == (0, "", "wrote new.npz\n")
     assert run("render", "--size", "32x24") == (0, "", "wrote coupe.png\n")
-    assert (pixels("coupe.png") == image(demo(), render(demo(), 24, 32, smooth=2))).all()
+    assert (pixels("coupe.png") == image(demo(), size=(32, 24))).all()
     assert read_picture("new.npz").scene.name == "coupe"
     refused("render", 73)
 
@@ -48,7 +47,7 @@ def test_a_picture_with_smooth_edges_is_saved_and_recolored_with_them(
     common = ("--size", "45x30", "--smooth", str(smooth))
     assert run("render", "scene", *common, "-o", "a.png", "--save", "a.npz").code == 0
     scene = read_scene("scene")
-    assert (pixels("a.png") == image(scene, render(scene, 30, 45, smooth=smooth))).all()
+    assert (pixels("a.png") == image(scene, size=(45, 30), smooth=smooth)).all()
     picture = read_picture("a.npz").picture
     assert (picture.smooth, picture.lines, picture.elements) == (smooth, 30 * smooth, 45 * smooth)
     color = "surfaces.side.object_color=navy"
@@ -61,10 +60,8 @@ def test_a_picture_with_smooth_edges_is_saved_and_recolored_with_them(
 
 def test_the_smoothness_of_the_command_is_one_of_those_of_images() -> None:
     (option,) = [each for each in command.params if each.name == "smooth"]
-    assert isinstance(option.type, click.Choice)
-    assert [int(choice) for choice in option.type.choices] == list(SMOOTHNESSES)
-    assert [smooth_of(None, (size, 2500)) for size in (4000, 4001)] == [SMOOTHNESS, 1]
-    assert smooth_of("4", (4096, 4096)) == 4
+    assert isinstance(option.type, click.IntRange)
+    assert (option.type.min, option.type.max) == (SMOOTHNESSES[0], SMOOTHNESSES[-1])
 
 
 def test_one_light_alone_is_the_scene_with_the_others_off(folder: Path, run: Run) -> None:
@@ -185,7 +182,7 @@ def test_words_have_a_pixel_of_the_picture_each(saved: Path, run: Run) -> None:
     # Neither option averages pixels, and so the picture file's pixels are computed again.
     outputs = ("--size", "32x24", "--words", "w.png", "--indexed", "i.png")
     assert run("render", "scene.npz", *levels, *outputs) == (0, "", "wrote w.png\nwrote i.png\n")
-    picture, scene = read_picture(saved)
+    scene, picture = read_picture(saved)
     with Image.open("w.png") as words:
         assert words.size == (32, 24)
     for name in ("front.low", "side"):

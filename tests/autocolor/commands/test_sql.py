@@ -59,7 +59,7 @@ def test_a_folder_and_a_picture_file_are_asked_as_a_store_is(folder: Path, tmp_p
 
     picture = tmp_path / "small.npz"
     scene = read_scene(folder)
-    write_picture(picture, scene, render(scene, 12, 16))
+    write_picture(picture, scene, render(scene, (16, 12)))
     for source in (folder, folder / "scene.toml", picture, small_store(tmp_path)):
         assert asked(source, "SELECT count(*) AS n FROM nodes", "--csv").stdout == "n\n5\n"
 

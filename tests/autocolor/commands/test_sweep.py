@@ -55,7 +55,7 @@ def test_a_size_given_for_a_smooth_picture_file_is_that_of_its_image(
     """Of 135 x 90 samples, which are 45 x 30 pixels."""
     assert run("render", "scene", "--size", "45x30", "--smooth", "3", "--save", "a.npz").code == 0
     line = f"sweep a.npz --vary {COLOR}=red -o {{name}}.png --force"
-    picture, scene = read_picture("a.npz")
+    scene, picture = read_picture("a.npz")
     red = image(scene.with_surface("side", object_color="red"), picture)
     for options in ("", "--size 45x30", "--smooth 3", "--size 45x30 --smooth 3"):
         assert run(*line.split(), *options.split()) == (0, "", "made 1 picture\n")

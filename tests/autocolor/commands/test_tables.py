@@ -37,7 +37,7 @@ def test_created_tables_fed_back_give_the_same_picture(
     again = autocolor.read_scene(box)
     assert (again.parts, again.surfaces, again.lights) == (bare.parts, bare.surfaces, bare.lights)
     assert again.view == bare.view
-    first, second = autocolor.render(bare, 24, 32), autocolor.render(again, 24, 32)
+    first, second = autocolor.render(bare, (32, 24)), autocolor.render(again, (32, 24))
     assert (first.intensity == second.intensity).all()
     assert (first.surface_number == second.surface_number).all()
 
@@ -59,7 +59,7 @@ def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(
         follows="eye",
     )
     (folder / "pictures").mkdir()
-    autocolor.write_picture("pictures/square.npz", scene, autocolor.render(scene, 24, 32))
+    autocolor.write_picture("pictures/square.npz", scene, autocolor.render(scene, (32, 24)))
     light = json.loads(run("tables", "pictures/square.npz", "--json").out)["lights"][0]
     assert (light["follows"], light["except_parts"]) == ("eye", ["lid"])
     assert light["half_spaces"]["left"]["direction"] == [1.0, 0.0, 0.0]

@@ -136,7 +136,7 @@ def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
         ("fault", "polygon"),
     ]
     assert ([part.stage for part in scene.parts], scene.exposure) == ([False], "auto")
-    colors = {tuple(color) for color in image(scene, render(scene, 60, 80)).reshape(-1, 3).tolist()}
+    colors = {tuple(color) for color in image(scene, render(scene, (80, 60))).reshape(-1, 3).tolist()}
     red, green, blue = COLORS[list(KINDS).index("turned")]
     # A shade of the kind's color: its components keep their order.
     assert any(g > b > r for r, g, b in colors), (red, green, blue)

@@ -49,7 +49,7 @@ def in_color() -> Scene:
 def content(make: Callable[[], Scene]) -> bytes:
     """The bytes of the picture file of a scene."""
     scene = make()
-    return bytes_of(scene, render(scene, LINES, ELEMENTS))
+    return bytes_of(scene, render(scene, (ELEMENTS, LINES)))
 
 
 def bytes_of(scene: Scene, picture: Picture) -> bytes:
@@ -106,7 +106,7 @@ def test_every_scene_that_renders_comes_back_with_its_picture_and_is_written_the
     scene: Scene, smooth: int
 ) -> None:
     try:
-        picture = render(scene, LINES // smooth, ELEMENTS // smooth, smooth=smooth)
+        picture = render(scene, (ELEMENTS // smooth, LINES // smooth), smooth=smooth)
         now = display_image(scene, picture)
     except InputError:
         return
@@ -127,7 +127,7 @@ def test_every_scene_that_renders_comes_back_with_its_picture_and_is_written_the
 
 
 def test_numpy_can_open_a_picture_file() -> None:
-    picture, scene = read(content(in_color))
+    scene, picture = read(content(in_color))
     with np.load(io.BytesIO(content(in_color))) as arrays:
         scale = json.loads(arrays["header"].tobytes())["scale"]
         assert (arrays["relative_intensity"] * np.float32(scale) == picture.intensity).all()
@@ -148,7 +148,7 @@ ALONE = "a picture and its scene must both have a scalar or neither, not one alo
 def test_a_picture_that_is_not_of_the_scene_or_has_another_suffix_is_not_written(
     tmp_path: Path, make: Callable[[], Scene], name: str, scalar: Any, sentence: str
 ) -> None:
-    picture, scene = read(content(make))
+    scene, picture = read(content(make))
     with pytest.raises(UsageError, match=sentence):
         write_picture(tmp_path / name, scene.replace(scalar=scalar), picture)
     assert list(tmp_path.iterdir()) == []
@@ -168,7 +168,7 @@ def test_changed_bytes_are_refused_or_give_a_picture_that_can_be_shown(
         changed[place : place + length] = data.draw(st.binary(max_size=40))
     with suppress(InputError):
         # Members have right checksums.
-        picture, scene = read(zipped({**members, name: bytes(changed)}) if in_members else bytes(changed))
+        scene, picture = read(zipped({**members, name: bytes(changed)}) if in_members else bytes(changed))
         display_image(scene, picture)
 
 

@@ -136,7 +136,7 @@ def test_a_half_space_along_an_axis_is_a_flap_bit_for_bit(
     plane = HalfSpace("end", (x, y, z), direction, edge_width=edge_width)  # type: ignore[arg-type]
     half_space = Light("light", (0.2, -1, 0.1), half_spaces=(plane,))
     one, other = (
-        render(wall_scene(sphere(12, 8), view=view, lights=[light]), 12, 16)
+        render(wall_scene(sphere(12, 8), view=view, lights=[light]), (16, 12))
         for light in (with_flap, half_space)
     )
     assert one.intensity.tobytes() == other.intensity.tobytes()
@@ -148,7 +148,7 @@ def test_a_wall_that_lies_on_the_plane_is_lit_and_at_a_soft_edge_it_is_dark(dire
     free = Light("light", (0.3, -2.0, 0.1))
     plane = HalfSpace("wall", (5.0, 0.0, 3.0), direction)
     sharp, soft, whole = (
-        render(wall_scene(view=view, lights=[free.replace(half_spaces=planes)]), 30, 40).intensity
+        render(wall_scene(view=view, lights=[free.replace(half_spaces=planes)]), (40, 30)).intensity
         for planes in ([plane], [plane.replace(edge_width=1e-3)], [])
     )
     assert sharp.tobytes() == whole.tobytes()
@@ -214,7 +214,7 @@ def test_planes_however_far_and_edges_of_any_width_leave_finite_light(
     assume(any(point))
     plane = HalfSpace("far", point, direction, edge_width=edge_width)
     light = Light("light", (0.2, -1, 0.1), direction=(0, 1, 0), concentration=2, half_spaces=(plane,))
-    picture = render(wall_scene(lights=[light]), 12, 16)
+    picture = render(wall_scene(lights=[light]), (16, 12))
     assert np.isfinite(picture.intensity).all()
     assert picture.intensity.min() >= 0
 
@@ -229,7 +229,7 @@ def ratio(light: Light) -> tuple[Floats, VisiblePoints]:
     scene = wall_scene(wall(half=2.0), view=VIEW, lights=[light])
     free = wall_scene(wall(half=2.0), view=VIEW, lights=[Light("light", light.position)])
     points = visible_surfaces(scene.mesh, VIEW, (1,), 60, 80)
-    lit, whole = (render(each, 60, 80).intensity.ravel()[points.pixels] for each in (scene, free))
+    lit, whole = (render(each, (80, 60)).intensity.ravel()[points.pixels] for each in (scene, free))
     assert whole.min() > 0
     return lit.astype(np.float64) / whole, points
 
@@ -332,7 +332,7 @@ def test_a_soft_cone_on_a_wall_is_the_closed_form(
     scene = wall_scene(wall(half=2.0), view=VIEW, lights=[light])
     free = scene.with_light("light", cone_angle=None, inner_angle=None, concentration=0)
     points = visible_surfaces(scene.mesh, VIEW, (1,), 60, 80)
-    lit, whole = (render(each, 60, 80).intensity.ravel()[points.pixels] for each in (scene, free))
+    lit, whole = (render(each, (80, 60)).intensity.ravel()[points.pixels] for each in (scene, free))
     rays = points.world_points - light.position
     assert light.axis is not None
     cosines = rays @ light.axis / np.linalg.norm(rays, axis=1)
@@ -387,7 +387,7 @@ def test_on_a_wall_the_light_falls_with_the_distance_to_nothing_at_its_reach(
     x, _, z = points.world_points.T
     left = np.maximum(1 - np.sqrt(1 + (x - 0.25) ** 2 + (z - 0.125) ** 2) / reach, 0)
     left = left if falloff == "linear" else left**2
-    intensities = [render(each, 40, 40).intensity.ravel()[points.pixels] for each in (free, falling)]
+    intensities = [render(each, (40, 40)).intensity.ravel()[points.pixels] for each in (free, falling)]
     assert intensities[1] == pytest.approx(left * intensities[0], abs=1e-5)
     assert (left.min() == 0) == (reach < 1.8)
     assert left.max() > 0.02
@@ -402,7 +402,7 @@ def test_a_light_falls_to_a_half_and_to_a_quarter_at_half_its_reach() -> None:
 @given(FALLING, st.sampled_from([1e12, 1e20, 1e36]))
 def test_a_light_beyond_all_that_falls_gives_nothing_here(falloff: str, distance: float) -> None:
     light = Light("light", (0, -distance, 0), falloff=falloff, reach=3)
-    assert not render(wall_scene(lights=[light]), 4, 4).intensity.any()
+    assert not render(wall_scene(lights=[light]), (4, 4)).intensity.any()
 
 
 @pytest.mark.parametrize(
@@ -436,8 +436,8 @@ def test_a_light_linked_to_parts_is_the_light_of_all_where_they_are_and_nothing_
 ) -> None:
     links = Links(only_parts=names) if is_only else Links(except_parts=names)
     dark = scene.replace(ambient=0.0)
-    free = render(dark.replace(lights=(light,)), 12, 16)
-    linked = render(dark.replace(lights=(light.replace(links=links),)), 12, 16)
+    free = render(dark.replace(lights=(light,)), (16, 12))
+    linked = render(dark.replace(lights=(light.replace(links=links),)), (16, 12))
     numbers = [number for number, name in enumerate(PARTS, 1) if (name in names) == is_only]
     is_lit = np.isin(free.part_number, numbers)
     assert not linked.intensity[~is_lit].any()

@@ -455,7 +455,7 @@ def test_the_highlight_is_at_the_largest_cosine_of_all_surfaces_or_of_a_surface(
         scene = scene.with_surface(surface.name, reflectance=Reflectance(0.5, 0.5, Phong(1.0)))
     # Controls and switches are left out of it.
     bare = Light(light.name, light.position, direction=light.direction, at_infinity=light.at_infinity)
-    cosines = render(scene.replace(lights=[bare]), LINES, ELEMENTS).planes[light.name].specular
+    cosines = render(scene.replace(lights=[bare]), (ELEMENTS, LINES)).planes[light.name].specular
     sight = sight_of(rendered(scene.replace(lights=[light])))
     numbers_at = rendered(scene).picture.surface_number
     for name in (None, "body", "glass", "wheels"):
@@ -589,7 +589,7 @@ def test_the_rim_of_a_cone_straight_above_a_plane_is_a_circle(view: View, angle:
 def test_the_rim_of_a_cone_is_where_the_light_ends(angle: float, direction: Vector) -> None:
     light = Light("light", (0.2, -1.0, 0.1), direction=direction, cone_angle=angle)
     scene = wall_scene(wall(3, 2, half=2.0), view=FILLING, lights=[light])
-    lit = render(scene, LINES, ELEMENTS).planes["light"].diffuse > 0
+    lit = render(scene, (ELEMENTS, LINES)).planes["light"].diffuse > 0
     assert rims(wall_sight(scene), "light")["cone"].tolist() == lit_beside_dark(lit)
 
 
@@ -609,7 +609,7 @@ def test_the_rim_of_a_flap_is_where_the_light_ends(rim: Rim, flaps: Flaps, view:
     leaning = grid(4, 4, (-2.0, -0.8, -2.0), (4.0, 0.5, 0.0), (0.0, 0.7, 4.0))
     light = Light("light", (0.2, -9.0, 0.1), flaps=flaps)
     scene = wall_scene(leaning, view=view, lights=[light])
-    picture = render(scene, LINES, ELEMENTS)
+    picture = render(scene, (ELEMENTS, LINES))
     lit = picture.planes["light"].diffuse > 0
     twin = [
         pixel
@@ -626,7 +626,7 @@ def test_a_silhouette_is_no_rim() -> None:
     floating = Mesh.joined([cube(0.7), grid(2, 2, (-3.0, 4.0, -3.0), (6.0, 0.0, 0.0), (0.0, 0.0, 6.0))])
     light = Light("light", (0.0, -9.0, 0.0), flaps=Flaps(y=Flap(maximum=2.0)))
     scene = wall_scene(floating, view=FILLING, lights=[light])
-    picture = render(scene, LINES, ELEMENTS)
+    picture = render(scene, (ELEMENTS, LINES))
     assert len(lit_beside_dark(picture.planes["light"].diffuse > 0)) > 20
     assert rims(wall_sight(scene), "light")["y", "maximum"].tolist() == []
 
@@ -670,7 +670,7 @@ def test_the_rim_of_a_half_space_is_where_the_light_ends(
     plane = HalfSpace("left", (0.13, 0.2, 0.1), (1.0, 0.1, 0.5), edge_width, carried)
     light = Light("light", (0.2, -9.0, 0.1), aim=(0.0, 0.0, 0.0), half_spaces=(plane,))
     scene = wall_scene(wall(3, 2, half=2.5), view=view, lights=[light])
-    picture = render(scene, LINES, ELEMENTS)
+    picture = render(scene, (ELEMENTS, LINES))
     lit = picture.planes["light"].diffuse > 0
     found = rims(wall_sight(scene), "light")
     assert list(found) == [Plane("left")]
@@ -692,7 +692,7 @@ def test_a_soft_cone_ends_at_its_cone_angle() -> None:
 
 @cache
 def wall_picture() -> Picture:
-    return render(wall_scene(lights=[Light("key", (0, -4, 0))]), 480, 640)
+    return render(wall_scene(lights=[Light("key", (0, -4, 0))]), (640, 480))
 
 
 @given(st.integers(120, 300), st.integers(220, 400))

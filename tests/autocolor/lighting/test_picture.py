@@ -21,7 +21,7 @@ def close_to(expected: object, largest: float) -> object:
 
 @given(scenes())
 def test_ranges_are_the_minima_and_maxima_of_the_arrays(scene: Scene) -> None:
-    picture = render(scene, 12, 16)
+    picture = render(scene, (16, 12))
     on_object = picture.surface_number > 0
     points = {picture.surfaces[number - 1] for number in np.unique(picture.surface_number[on_object])}
     assert set(picture.ranges.surfaces) == points
@@ -49,9 +49,9 @@ def linked(scene: Scene, surface: str) -> Scene:
 
 @given(scenes())
 def test_each_surface_is_as_in_a_picture_with_no_other_lights_than_shine_on_it(scene: Scene) -> None:
-    picture = render(scene, 12, 16)
+    picture = render(scene, (16, 12))
     for number, surface in enumerate(scene.surfaces, 1):
-        alone = render(linked(scene, surface.name), 12, 16)
+        alone = render(linked(scene, surface.name), (16, 12))
         here = picture.surface_number == number
         largest = max(picture.ranges.whole.maximum, alone.ranges.whole.maximum)
         assert picture.intensity[here] == close_to(alone.intensity[here], largest)
@@ -59,7 +59,7 @@ def test_each_surface_is_as_in_a_picture_with_no_other_lights_than_shine_on_it(s
 
 @given(scenes())
 def test_the_part_at_a_pixel_has_the_surface_there(scene: Scene) -> None:
-    picture = render(scene, 9, 13)
+    picture = render(scene, (13, 9))
     assert picture.parts == scene.mesh.part_names
     assert (picture.part_number.shape, picture.part_number.dtype.name) == ((9, 13), "int32")
     assert not picture.part_number.flags.writeable
@@ -68,7 +68,7 @@ def test_the_part_at_a_pixel_has_the_surface_there(scene: Scene) -> None:
 
 
 def test_a_picture_works_its_part_numbers_out_when_they_are_asked_for() -> None:
-    picture = render(wall_scene(sphere()), 12, 16)
+    picture = render(wall_scene(sphere()), (16, 12))
     assert picture.visible_parts is not None
     assert "numbers" not in vars(picture.visible_parts)
     assert picture.part_number.max() == 1
@@ -101,12 +101,12 @@ def test_ambient_and_both_coefficients_k_times_as_high_change_no_word(scene: Sce
 
 def words(scene: Scene) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
     ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
-    return words_of(render(scene, 12, 16), ranges, scene.scaling, scene.mapping)
+    return words_of(render(scene, (16, 12)), ranges, scene.scaling, scene.mapping)
 
 
 @given(scenes())
 def test_nothing_is_where_nothing_is_seen_and_arrays_are_read_only(scene: Scene) -> None:
-    picture = render(scene, 9, 13)
+    picture = render(scene, (13, 9))
     assert picture.intensity.shape == picture.surface_number.shape == (9, 13)
     assert [picture.intensity.dtype.name, picture.surface_number.dtype.name] == ["float32", "uint8"]
     assert (picture.intensity[picture.surface_number == 0] == 0).all()
@@ -118,7 +118,7 @@ def test_nothing_is_where_nothing_is_seen_and_arrays_are_read_only(scene: Scene)
 
 @given(scenes())
 def test_the_planes_of_the_lights_add_up_to_the_picture(scene: Scene) -> None:
-    picture = render(scene, 12, 16)
+    picture = render(scene, (16, 12))
     total = np.where(picture.surface_number > 0, scene.ambient, 0.0)
     for light in scene.lights:
         if light.on and light.intensity > 0:
@@ -132,7 +132,7 @@ def test_the_planes_of_the_lights_add_up_to_the_picture(scene: Scene) -> None:
 
 
 def test_no_light_at_all_is_a_picture_of_zeros() -> None:
-    picture = render(wall_scene(sphere(), lights=[]), 12, 16)
+    picture = render(wall_scene(sphere(), lights=[]), (16, 12))
     assert picture.ranges.whole == (0, 0)
     assert picture.surface_number.any()
 
@@ -140,7 +140,7 @@ def test_no_light_at_all_is_a_picture_of_zeros() -> None:
 @pytest.mark.parametrize("intensity", [1e30, 1e-30])
 def test_strong_and_weak_lights_are_no_different(intensity: float) -> None:
     one, other = (
-        render(wall_scene(sphere(), lights=[Light("key", (2, -3, 3), strength)]), 24, 32)
+        render(wall_scene(sphere(), lights=[Light("key", (2, -3, 3), strength)]), (32, 24))
         for strength in (1.0, intensity)
     )
     assert one.relative.tobytes() == other.relative.tobytes()
@@ -149,7 +149,7 @@ def test_strong_and_weak_lights_are_no_different(intensity: float) -> None:
 
 @given(scenes())
 def test_a_picture_from_its_own_rasters_is_the_same_picture(scene: Scene) -> None:
-    picture = render(scene, 9, 13)
+    picture = render(scene, (13, 9))
     relative = np.zeros(9 * 13, np.float32)
     relative[picture.pixels] = picture.relative
     again = Picture.from_rasters(
@@ -171,7 +171,7 @@ def test_a_picture_from_its_own_rasters_is_the_same_picture(scene: Scene) -> Non
 
 
 def test_a_picture_from_its_rasters_has_the_scalar() -> None:
-    picture = render(wall_scene(sphere(), scalar={"name": "z"}), 9, 13)
+    picture = render(wall_scene(sphere(), scalar={"name": "z"}), (13, 9))
     assert picture.scalar is not None
     again = Picture.from_rasters(
         picture.intensity,

@@ -92,7 +92,7 @@ def expected_on_wall(scene: Scene, lines: int, elements: int) -> dict[tuple[int,
 
 
 def assert_as_the_paper(scene: Scene) -> None:
-    picture = render(scene, LINES, ELEMENTS)
+    picture = render(scene, (ELEMENTS, LINES))
     expected = expected_on_wall(scene, LINES, ELEMENTS)
     largest = max((lit.intensity for lit in expected.values()), default=0.0)
     # Where less than a hundredth of the light is visible, float32 rounds in proportion to the whole.
@@ -471,7 +471,7 @@ def test_a_light_within_the_wall_gives_finite_light() -> None:
             Light("spot", (0.2, 0.0, 0.1), direction=(0, 1, 0), concentration=3, cone_angle=20),
         ]
     )
-    picture = render(scene, LINES + 1, ELEMENTS + 1)
+    picture = render(scene, (ELEMENTS + 1, LINES + 1))
     assert np.isfinite(picture.intensity).all()
     assert picture.ranges.whole.maximum < 2.5
 
@@ -484,8 +484,7 @@ def test_no_exponent_makes_a_highlight_brighter_than_its_light(exponent: float) 
             view=View((0.3, -4.0, 0.2), target=(0.3, 0.0, 0.2), field_of_view=25.0),
             lights=[Light("light", (0.3, -4.0, 0.2))],
         ),
-        301,
-        301,
+        (301, 301),
     )
     assert picture.ranges.whole.maximum <= 1.000001
 
@@ -493,7 +492,7 @@ def test_no_exponent_makes_a_highlight_brighter_than_its_light(exponent: float) 
 @pytest.mark.parametrize("concentration", [1e4, 1e7, 1e30])
 def test_no_concentration_makes_a_light_brighter(concentration: float) -> None:
     light = Light("light", (0.3, -4.0, 0.2), direction=(0, 1, 0), concentration=concentration)
-    picture = render(wall_scene(reflectance=Reflectance(1, 0, 1), lights=[light]), 101, 101)
+    picture = render(wall_scene(reflectance=Reflectance(1, 0, 1), lights=[light]), (101, 101))
     assert picture.ranges.whole.maximum <= 1.000001
 
 
@@ -514,12 +513,12 @@ def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
 def test_a_cone_of_more_than_90_degrees_lights_behind_a_light_without_concentration() -> None:
     # The light shines away from the wall; the wall is at 180 degrees and less from its direction.
     away = Light("light", (0.0, -1.0, 0.0), direction=(0.0, -1.0, 0.0), cone_angle=170.0)
-    picture = render(wall_scene(lights=[away]), 51, 69)
+    picture = render(wall_scene(lights=[away]), (69, 51))
     assert picture.intensity[25, 34] == 0
     assert picture.intensity[25, 59] > 0
-    concentrated = render(wall_scene(lights=[away.replace(concentration=0.01)]), 51, 69)
+    concentrated = render(wall_scene(lights=[away.replace(concentration=0.01)]), (69, 51))
     assert concentrated.ranges.whole.maximum == 0
-    narrow = render(wall_scene(lights=[away.replace(cone_angle=90.0)]), 51, 51)
+    narrow = render(wall_scene(lights=[away.replace(cone_angle=90.0)]), (51, 51))
     assert narrow.ranges.whole.maximum == 0
 
 
@@ -532,7 +531,7 @@ def test_a_flap_along_the_middle_of_the_wall_lights_exactly_its_side(
     limits: Flaps, lit_side: int, away: float
 ) -> None:
     light = Light("light", (0.0, -away, 0.0), flaps=limits)
-    picture = render(wall_scene(lights=[light]), 40, 40)
+    picture = render(wall_scene(lights=[light]), (40, 40))
     on_wall = picture.surface_number == 1
     line, element = np.indices((40, 40))
     side = np.where(element < 20, -1, 1) if limits.z is None else np.where(line < 20, 1, -1)
@@ -544,9 +543,9 @@ def test_a_flap_along_the_middle_of_the_wall_lights_exactly_its_side(
 def test_a_wall_that_lies_on_a_flap_is_lit(limit: Flap) -> None:
     view = View((1.0, -7.0, 2.0), target=(0.0, 0.0, 0.0))
     lit = render(
-        wall_scene(view=view, lights=[Light("light", (0.3, -2.0, 0.1), flaps=Flaps(y=limit))]), 30, 40
+        wall_scene(view=view, lights=[Light("light", (0.3, -2.0, 0.1), flaps=Flaps(y=limit))]), (40, 30)
     )
-    whole = render(wall_scene(view=view, lights=[Light("light", (0.3, -2.0, 0.1))]), 30, 40)
+    whole = render(wall_scene(view=view, lights=[Light("light", (0.3, -2.0, 0.1))]), (40, 30))
     assert lit.intensity.tobytes() == whole.intensity.tobytes()
 
 
@@ -573,7 +572,7 @@ def test_the_size_of_the_world_does_not_change_the_picture(light: Light, power: 
         return wall_scene(wall(2, 2, half=size), view=view, lights=[moved])
 
     assume(min(abs(coordinate) for coordinate in light.position) > 1e-3)
-    one, other = render(scaled(1.0), 12, 16), render(scaled(2.0**power), 12, 16)
+    one, other = render(scaled(1.0), (16, 12)), render(scaled(2.0**power), (16, 12))
     assert one.intensity.tobytes() == other.intensity.tobytes()
 
 
@@ -587,7 +586,7 @@ def test_a_sphere_is_lit_as_the_paper_says(two_sided: bool) -> None:
     ]
     scene = wall_scene(sphere(128, 64), lights=some, view=view, two_sided=two_sided)
     scene = scene.with_surface("sphere", reflectance=reflectance, two_sided=two_sided)
-    picture = render(scene, 40, 40)
+    picture = render(scene, (40, 40))
     for line, element in np.argwhere(picture.surface_number).tolist():
         direction = np.array(ray(view, 40, 40, line, element))
         eye = np.array(view.eye)
@@ -676,7 +675,7 @@ def test_a_light_at_infinity_lights_like_a_light_a_million_times_as_far_away(
     far = light.replace(position=(x, y, z), at_infinity=False)
     for mesh in (wall(3, 2), sphere(24, 16)):
         scene = wall_scene(mesh, view=view, lights=[light])
-        at_infinity, moved = (render(each, 30, 40) for each in (scene, scene.replace(lights=[far])))
+        at_infinity, moved = (render(each, (40, 30)) for each in (scene, scene.replace(lights=[far])))
         largest = max(float(moved.intensity.max()), 1e-3)
         assert all_close(at_infinity.intensity, moved.intensity, abs=1e-5 * largest)
 
@@ -684,14 +683,14 @@ def test_a_light_at_infinity_lights_like_a_light_a_million_times_as_far_away(
 def test_at_infinity_concentration_and_cone_leave_all_of_the_light_and_flaps_do_not() -> None:
     light = Light("light", (0.3, -2, 0.1), aim=(0, 0, 0), at_infinity=True)
     whole, narrow, flapped = (
-        render(wall_scene(lights=[each]), 12, 16)
+        render(wall_scene(lights=[each]), (16, 12))
         for each in (
             light,
             light.replace(concentration=40, cone_angle=1),
             light.replace(flaps={"x": {"minimum": 0}}),
         )
     )
-    near = render(wall_scene(lights=[light.replace(at_infinity=False)]), 12, 16)
+    near = render(wall_scene(lights=[light.replace(at_infinity=False)]), (16, 12))
     assert not np.allclose(whole.intensity, near.intensity, rtol=0.01)
     assert narrow.intensity.tobytes() == whole.intensity.tobytes()
     assert (flapped.intensity[:, :7] == 0).all()
@@ -788,10 +787,10 @@ def test_a_light_of_any_intensity_is_not_refused_for_surfaces_that_it_does_not_r
     strong = Light("key", (2, -3, 3), 1e39)
     for links in ({"except_surfaces": ["sphere"]}, {"except_parts": ["sphere"]}):
         scene = wall_scene(sphere(), lights=[strong.replace(**links)], ambient=0.5)  # type: ignore[arg-type]
-        picture = render(scene, 12, 16)
+        picture = render(scene, (16, 12))
         assert set(picture.intensity[picture.surface_number > 0].tolist()) == {0.5}
     with pytest.raises(InputError, match="surface 'sphere' under light 'key': intensities must stay below"):
-        render(wall_scene(sphere(), lights=[strong.replace(only_parts=["sphere"])]), 12, 16)
+        render(wall_scene(sphere(), lights=[strong.replace(only_parts=["sphere"])]), (16, 12))
 
 
 HUGE = Light("key", (2, -3, 3), 1e300)
@@ -821,7 +820,7 @@ REFUSED = [
         " the light's intensity or the surface's diffuse and specular",
     ),
 ]
-test_intensities_that_float32_cannot_hold_are_refused = refused(lambda scene: render(scene, 9, 12), REFUSED)
+test_intensities_that_float32_cannot_hold_are_refused = refused(lambda scene: render(scene, (12, 9)), REFUSED)
 
 
 def test_nothing_at_all_has_a_scale_of_1() -> None:

@@ -78,7 +78,7 @@ def test_a_plane_whose_value_is_an_edge_of_a_band_has_one_color(
     middle = plane.coordinates.mean(axis=0)
     view = View(tuple((middle + 4 * unit + 0.3 * across).tolist()), target=tuple(middle.tolist()))
     scene = scene_of(plane, view=view).with_scalar(name=name, limits=limits, bands=10, shades=1)
-    picture = render(scene, 60, 80)
+    picture = render(scene, (80, 60))
     assert picture.scalar_values is not None
     (bands,) = bands_by_surface(scene, picture).values()
     assert set(band_numbers(picture.scalar_values, bands).tolist()) == {5}
@@ -114,7 +114,7 @@ def test_a_linear_field_on_a_plane_gives_straight_bands_at_the_computed_places()
         scalar={"name": "field", "bands": 10, "shades": 4, "limits": [-4, 16]},
     )
     lines, elements = 48, 64
-    image = display_image(scene, render(scene, lines, elements))
+    image = display_image(scene, render(scene, (elements, lines)))
     ((first, levels),) = image.ranges.values()
     assert levels == 40
     # The plane fills the picture: 8 world units are its elements, whose centers are at half-integers.
@@ -138,12 +138,12 @@ def panes(count: int, *values: float, **scalar: Any) -> Scene:
 
 
 def bands_of(scene: Scene) -> Any:
-    return bands_by_surface(scene, render(scene, 24, 32))
+    return bands_by_surface(scene, render(scene, (32, 24)))
 
 
 def test_the_surfaces_that_are_not_colored_share_the_rest_as_ever() -> None:
     scene = panes(3, surfaces=["pane 1"], shades=4)
-    image = display_image(scene, render(scene, 24, 32))
+    image = display_image(scene, render(scene, (32, 24)))
     assert list(image.bands) == ["pane 1"]
     assert image.ranges["pane 1"].levels == 64
     assert sum(each.levels for each in image.ranges.values()) == SURFACE_WORDS
@@ -187,12 +187,12 @@ def test_values_beyond_the_limits_have_bands_where_there_are_limits_and_colors()
 def test_the_own_limits_are_the_range_of_the_values_or_around_a_constant(
     values: tuple[float, ...], limits: tuple[float, float]
 ) -> None:
-    assert own_limits(render(panes(2, *values), 24, 32)) == limits
+    assert own_limits(render(panes(2, *values), (32, 24))) == limits
 
 
 @given(scenes())
 def test_every_word_of_a_colored_surface_tells_band_and_shade(scene: Scene) -> None:
-    picture = render(scene, 9, 12)
+    picture = render(scene, (12, 9))
     image = display_image(scene, picture)
     for name, bands in image.bands.items():
         first, levels = image.ranges[name]
@@ -204,7 +204,7 @@ def test_every_word_of_a_colored_surface_tells_band_and_shade(scene: Scene) -> N
 def test_without_a_scalar_or_its_values_there_are_no_bands() -> None:
     scene = panes(2)
     assert bands_of(scene.without_scalar()) == {}
-    assert bands_by_surface(scene, render(scene.without_scalar(), 9, 12)) == {}
+    assert bands_by_surface(scene, render(scene.without_scalar(), (12, 9))) == {}
 
 
 def test_as_many_shades_are_made_as_are_asked_for_or_at_most_eight_that_the_words_suffice_for() -> None:

@@ -182,15 +182,15 @@ def test_a_smooth_picture_in_many_colors_is_true_within_a_few_steps() -> None:
     assert errors.max() <= 24
 
 
-@pytest.mark.parametrize("size", [(96, 128), (49, 65), (48, 64), (24, 32)])
+@pytest.mark.parametrize("size", [(128, 96), (65, 49), (64, 48), (32, 24)])
 def test_a_thumbnail_has_the_averages_of_rectangles_that_differ_by_one_at_most(size: tuple[int, int]) -> None:
-    shown = display_image(car(), render(car(), *size))
+    shown = display_image(car(), render(car(), size))
     small = thumbnail(shown)
     assert small.dtype == np.uint8
-    lines, elements = min(size[0], 48), min(size[1], 64)
+    elements, lines = min(size[0], 64), min(size[1], 48)
     assert small.shape == (lines, elements, 3)
-    rows = [line * size[0] // lines for line in range(lines + 1)]
-    columns = [element * size[1] // elements for element in range(elements + 1)]
+    rows = [line * size[1] // lines for line in range(lines + 1)]
+    columns = [element * size[0] // elements for element in range(elements + 1)]
     for line, element in np.ndindex(lines, elements):
         block = shown.colors[rows[line] : rows[line + 1], columns[element] : columns[element + 1]]
         # Half up, as everywhere.

@@ -232,17 +232,17 @@ def test_an_edited_image_is_as_if_made_alone_and_its_loads_turn_one_table_into_t
 
 
 @given(scenes(), rasters)
-def test_all_lines_together_are_the_words_of_the_picture(scene: Scene, raster: tuple[int, int]) -> None:
-    image = display_image(scene, render(scene, *raster))
+def test_all_lines_together_are_the_words_of_the_picture(scene: Scene, size: tuple[int, int]) -> None:
+    image = display_image(scene, render(scene, size))
     found = list(words_by_line(image))
-    assert [line for line, _ in found] == list(range(raster[0]))
-    assert {(words.shape, words.dtype) for _, words in found} == {((1, raster[1]), np.dtype("u2"))}
+    assert [line for line, _ in found] == list(range(size[1]))
+    assert {(words.shape, words.dtype) for _, words in found} == {((1, size[0]), np.dtype("u2"))}
     assert np.concatenate([words for _, words in found]).tolist() == image.words.tolist()
 
 
 def test_a_coarse_image_has_no_lines() -> None:
     with pytest.raises(UsageError) as caught:
-        words_by_line(display_image(car(), render(car(), 12, 16), block=2))
+        words_by_line(display_image(car(), render(car(), (16, 12)), block=2))
     assert str(caught.value) == (
         "an image must have blocks of 1 pixel for its lines, not of 2; refine it first"
     )

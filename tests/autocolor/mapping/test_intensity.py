@@ -96,7 +96,7 @@ def test_with_the_last_light_off_no_pixel_is_brighter_and_each_has_its_lowest_le
     scene = wall_scene().replace(contrast=contrast, exposure=exposure, ambient=0.05)
     scene = scene.with_paint("wall", **paint)
     dark = scene.replace(lights=[light.replace(on=False) for light in scene.lights])
-    lit, unlit = (display_image(each, render(each, 24, 32)) for each in (scene, dark))
+    lit, unlit = (display_image(each, render(each, (32, 24))) for each in (scene, dark))
     assert (unlit.colors <= lit.colors).all()
     assert set(unlit.words.ravel().tolist()) == {0, unlit.ranges["wall"].first}
 
@@ -166,11 +166,11 @@ def test_dithering_leaves_a_range_without_extent_alone() -> None:
 
 def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
     scene = wall_scene(lights=[Light("key", (1.0, -3.0, 2.0))], scaling="object")
-    picture = render(scene, 24, 32)
+    picture = render(scene, (32, 24))
     held = scene.replace(exposure={"object": (0.0, picture.ranges.whole.maximum)})
     dimmed = held.with_light("key", intensity=0.5)
-    bright = display_image(held, render(held, 24, 32)).words.astype(int) - 1
-    dark = display_image(dimmed, render(dimmed, 24, 32)).words.astype(int) - 1
+    bright = display_image(held, render(held, (32, 24))).words.astype(int) - 1
+    dark = display_image(dimmed, render(dimmed, (32, 24))).words.astype(int) - 1
     seen = picture.surface_number > 0
     assert bright[seen].max() == 1006
     assert np.abs(dark[seen] * 2 - bright[seen]).max() <= 1
@@ -179,7 +179,7 @@ def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
 @pytest.mark.parametrize("exposure", ["auto", "99.5 %"])
 def test_no_range_is_held_if_no_range_has_an_extent(exposure: str) -> None:
     scene = wall_scene(lights=()).replace(ambient=0)
-    assert held_exposure(render(scene, 9, 12), scene.scaling, exposure) == exposure
+    assert held_exposure(render(scene, (12, 9)), scene.scaling, exposure) == exposure
 
 
 def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
@@ -253,7 +253,7 @@ def test_scaling_all_light_leaves_every_word(scene: Scene, percentage: str, fact
     lights = [light.replace(intensity=factor * light.intensity) for light in scene.lights]
     scene = scene.replace(exposure=percentage, scalar=None)
     scaled = scene.replace(lights=lights, ambient=factor * scene.ambient)
-    one, other = (display_image(each, render(each, 9, 12)) for each in (scene, scaled))
+    one, other = (display_image(each, render(each, (12, 9))) for each in (scene, scaled))
     assert other.words.tolist() == one.words.tolist()
     assert other.entries.tolist() == one.entries.tolist()
 
@@ -281,7 +281,7 @@ def test_a_minimum_and_a_maximum_have_the_lowest_and_the_highest_level(
 def test_brighter_pixels_of_a_surface_have_higher_words_of_its_range_and_dithering_moves_them_by_one(
     scene: Scene,
 ) -> None:
-    picture = render(scene, 12, 16)
+    picture = render(scene, (16, 12))
     ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
     plain, dithered = (
         words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, dither)
@@ -304,7 +304,7 @@ def test_brighter_pixels_of_a_surface_have_higher_words_of_its_range_and_ditheri
 
 @given(scenes())
 def test_held_ranges_map_as_before_and_the_others_come_from_the_picture(scene: Scene) -> None:
-    picture = render(scene, 9, 12)
+    picture = render(scene, (12, 9))
     ranges = mapped_ranges(picture, scene.scaling, scene.exposure)
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
     found = following_ranges(picture, "surface", scene.exposure)

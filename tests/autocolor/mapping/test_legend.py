@@ -35,7 +35,7 @@ def ball(**scalar: Any) -> Scene:
 
 
 def shown(scene: Scene, lines: int = 480, elements: int = 640) -> DisplayImage:
-    return display_image(scene, render(scene, lines, elements))
+    return display_image(scene, render(scene, (elements, lines)))
 
 
 def legend_of(image: DisplayImage) -> Legend:

@@ -39,7 +39,7 @@ LINES, ELEMENTS = 24, 32
 
 def image_of(scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> NormalImage:
     scene = scene.replace(words="normals")
-    image = display_image(scene, render(scene, lines, elements))
+    image = display_image(scene, render(scene, (elements, lines)))
     assert isinstance(image, NormalImage)
     return image
 
@@ -288,7 +288,7 @@ def intensities(scene: Scene, *normals: Vector) -> list[float]:
 def test_every_pixel_of_a_ball_has_the_light_of_its_normal_where_lights_and_eye_are_far() -> None:
     lights = Light("key", (FAR, -FAR, FAR)), Light("rim", (-FAR, 0, 0.3 * FAR), 0.6)
     scene = far_ball(*lights, diffuse=0.7, specular=0.6, exponent=20).replace(words="normals")
-    picture = render(scene, 60, 80)
+    picture = render(scene, (80, 60))
     assert picture.normals is not None
     count = len(picture.pixels)
     lit = light_at_normals(scene, picture.normals, picture.slices, np.arange(count), count)
@@ -301,7 +301,7 @@ def test_the_picture_of_a_ball_differs_little_from_the_true_one(
     exponent: float, mean: float, most: int
 ) -> None:
     scene = ball_scene(exponent)
-    picture = render(scene, 120, 160)
+    picture = render(scene, (160, 120))
     image = image_of(scene, 120, 160)
     differences = np.abs(image.colors - display_image(scene, picture).colors.astype(np.int64))
     on_ball = picture.surface_number > 0

@@ -296,7 +296,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Session:
 
 @cache
 def picture_of_start() -> Picture:
-    return render(start(), 12, 16)
+    return render(start(), (16, 12))
 
 
 def by_scene_file(scene: Scene, folder: Path, session: Session) -> Scene:
@@ -313,7 +313,7 @@ def by_table_store(scene: Scene, folder: Path, session: Session) -> Scene:
 def by_picture_file(scene: Scene, folder: Path, session: Session) -> Scene:
     # An edit that costs less than a sum of lights leaves the picture as it is.
     is_rendered = costs_at_least(start(), scene, Tier.MIX)
-    picture = render(scene, 12, 16) if is_rendered else picture_of_start()
+    picture = render(scene, (16, 12)) if is_rendered else picture_of_start()
     write_picture(folder / "scene.npz", scene, picture)
     return read_picture(folder / "scene.npz").scene
 

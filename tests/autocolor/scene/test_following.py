@@ -143,7 +143,7 @@ def test_an_aim_that_rounding_would_move_onto_its_light_still_tells_the_directio
     assert scene.light_in_world("near").axis == pytest.approx((0, 1, 0), abs=1e-6)
     followed = scene.with_new_light("last", position=(0, 0, 0), follows="near").light_in_world("last")
     assert followed.position == pytest.approx(scene.light_in_world("near").position, abs=1e-8)
-    assert render(scene, 8, 8).intensity.max() > 0
+    assert render(scene, (8, 8)).intensity.max() > 0
 
 
 def test_a_light_named_eye_exists_but_to_follow_eye_means_the_eye() -> None:
@@ -301,7 +301,7 @@ def test_an_object_twice_as_large_looks_the_same_with_a_fitted_rig() -> None:
     large = scene_of(cube(2.0), lights=()).with_rig(small.rig)
     for is_on in (True, False):
         each_alone = (each.with_light("bare", on=is_on) for each in (small, large))
-        one, other = (render(each, 24, 32).intensity for each in each_alone)
+        one, other = (render(each, (32, 24)).intensity for each in each_alone)
         assert np.ptp(one) > 0.01
         assert np.allclose(one, other, atol=1e-5)
 
@@ -329,7 +329,7 @@ def test_lights_that_follow_keep_their_place_in_sizes_of_the_object() -> None:
     assert left == Light("left", (-2, 0, 0), direction=(1, 3, 0), follows="eye")
     small = scene_of(cube(), lights=rig.lights)
     large = scene_of(cube(2.0), lights=()).with_rig(small.rig)
-    one, other = (render(each, 24, 32).intensity for each in (small, large))
+    one, other = (render(each, (32, 24)).intensity for each in (small, large))
     assert np.allclose(one, other, atol=1e-5)
 
 

@@ -211,7 +211,7 @@ def test_each_finish_looks_different() -> None:
     images = {}
     for name in FINISHES:
         finish = scene.with_surface("sphere", **finished(scene.surface("sphere"), name))
-        images[name] = image(finish, render(finish, 60, 80)).astype(float)
+        images[name] = image(finish, render(finish, (80, 60))).astype(float)
     for one, other in itertools.combinations(FINISHES, 2):
         assert np.abs(images[one] - images[other]).mean() > 1, (one, other)
     means = {name: found.mean() for name, found in images.items()}

@@ -214,7 +214,7 @@ def test_a_framed_object_is_in_the_middle_of_the_picture(
 def test_an_object_is_framed_by_the_shape_of_the_picture(mesh: Mesh, lines: int, elements: int) -> None:
     scene = scene_of(mesh)
     view = framed(scene.view, scene.object_coordinates, elements / lines)
-    seen = np.nonzero(render(scene.replace(view=view), lines, elements).surface_number)
+    seen = np.nonzero(render(scene.replace(view=view), (elements, lines)).surface_number)
     assert max(np.ptp(seen[0]) / lines, np.ptp(seen[1]) / elements) == pytest.approx(0.86, abs=0.03)
 
 
@@ -259,7 +259,7 @@ def test_the_eye_and_the_lights_stand_where_they_stood(
 @given(meshes(), SIZES, vectors())
 def test_a_scene_is_created_for_any_mesh_and_rendered(mesh: Mesh, size: float, middle: Vector) -> None:
     scene = scene_of(resized(mesh, size, middle))
-    picture = render(scene, 12, 16)
+    picture = render(scene, (16, 12))
     assert np.isfinite(picture.intensity).all()
     assert len(scene.lights) == 4
 
@@ -270,7 +270,7 @@ def test_created_lights_and_view_grow_with_the_object(size: float) -> None:
     assert np.array(other.view.eye) == pytest.approx(np.array(one.view.eye) * size)
     for light, larger in zip(one.lights, other.lights, strict=True):
         assert np.array(larger.position) == pytest.approx(np.array(light.position) * size, abs=1e-9 * size)
-    assert render(one, 24, 32).intensity == pytest.approx(render(other, 24, 32).intensity, abs=1e-4)
+    assert render(one, (32, 24)).intensity == pytest.approx(render(other, (32, 24)).intensity, abs=1e-4)
 
 
 @given(meshes())

@@ -376,7 +376,7 @@ def test_an_image_is_exported_as_a_display_shows_it_and_never_over_a_file(hand: 
     settle(hand)
     assert told(hand) == ("saved boxes.png: 640x480, smoothness 1", False)
     scene = hand.scene
-    assert (np.asarray(Image.open(folder / "boxes.png")) == image(scene, render(scene))).all()
+    assert (np.asarray(Image.open(folder / "boxes.png")) == image(scene, smooth=1)).all()
     before = (folder / "boxes.png").read_bytes()
     # The screen may be left at once.
     hand.pick("export")
@@ -407,7 +407,7 @@ def test_an_image_is_exported_at_another_size_and_smoothness(hand: Hand, folder:
     settle(hand)
     assert told(hand) == ("saved boxes.png: 60x40, smoothness 3", False)
     scene = hand.scene
-    save_image(folder / "expected.png", scene, render(scene, 40, 60, smooth=3))
+    save_image(folder / "expected.png", scene, size=(60, 40), smooth=3)
     assert (folder / "boxes.png").read_bytes() == (folder / "expected.png").read_bytes()
 
 
@@ -471,7 +471,7 @@ def test_the_picture_of_the_file_under_the_pointer_is_shown_in_borrowed_entries(
     folder: Path, recent: bool
 ) -> None:
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", scene, render(scene, 48, 96))
+    write_picture(folder / "wall.npz", scene, render(scene, (96, 48)))
     (folder / "damaged.npz").write_bytes((folder / "wall.npz").read_bytes()[:2000])
     note_file(folder / "wall.npz")
     hand = hand_at(folder, "file")
@@ -505,7 +505,7 @@ def test_the_picture_of_the_file_under_the_pointer_is_shown_in_borrowed_entries(
 @pytest.mark.parametrize(("lines", "elements"), [(400, 100), (20, 700)])
 def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, elements: int) -> None:
     scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", scene, render(scene, lines, elements))
+    write_picture(folder / "wall.npz", scene, render(scene, (elements, lines)))
     hand = hand_at(folder, "file")
     point_at(hand, "wall.npz")
     settle(hand)

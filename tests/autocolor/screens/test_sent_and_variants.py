@@ -322,7 +322,7 @@ def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) ->
     assert all(WORK.covers(place) for place in PLACES)
     for place in {0, number - 1}:
         scene = list(hand.viewer.studio.variants.values())[place].scene
-        picture = render(scene, lines=2 * LINES, elements=2 * ELEMENTS)
+        picture = render(scene, (2 * ELEMENTS, 2 * LINES))
         wanted = thumbnail(display_image(scene, picture), LINES, ELEMENTS).astype(np.int64)
         errors = np.abs(shown_at(hand, place) - wanted).max(axis=2)
         assert errors.mean() < 3
@@ -398,7 +398,7 @@ def test_a_small_picture_that_is_refused_is_black(tmp_path: Path) -> None:
     scene = scene.with_surface("wall", diffuse=0.1, specular=0.1).with_surface("strip", diffuse=1, specular=1)
     render(scene)
     with pytest.raises(InputError, match="intensities must stay below"):
-        render(scene, lines=2 * LINES, elements=2 * ELEMENTS)
+        render(scene, (2 * ELEMENTS, 2 * LINES))
     hand.viewer.studio.edit(scene)
     hand.pick("keep")
     rest(hand)

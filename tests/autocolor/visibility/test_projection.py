@@ -87,7 +87,7 @@ def test_a_node_that_no_polygon_uses_changes_nothing() -> None:
         mesh.part_numbers,
         mesh.part_names,
     )
-    pictures = [render(scene.replace(mesh=each), 30, 40) for each in (mesh, stray)]
+    pictures = [render(scene.replace(mesh=each), (40, 30)) for each in (mesh, stray)]
     assert pictures[0].intensity.tobytes() == pictures[1].intensity.tobytes()
 
 
@@ -102,7 +102,7 @@ def test_a_dart_is_split_at_its_notch() -> None:
     for angle in (0, 90, 180, 270, 37):
         view = View((0, -4, 0), direction=(0, 1, 0), angle=angle, field_of_view=40)
         scene = scene_of(dart, view=view)
-        covered = render(scene, 64, 64).surface_number > 0
+        covered = render(scene, (64, 64)).surface_number > 0
         for line, element in np.ndindex(64, 64):
             x, _, z = (4 * part for part in ray(view, 64, 64, line, element))
             x = abs(x)

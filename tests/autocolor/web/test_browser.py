@@ -66,7 +66,7 @@ def coupe() -> autocolor.Scene:
 
 @pytest.fixture(scope="module")
 def small(coupe: autocolor.Scene) -> autocolor.Picture:
-    return autocolor.render(coupe, lines=120, elements=160, smooth=2)
+    return autocolor.render(coupe, (160, 120), smooth=2)
 
 
 @pytest.fixture
@@ -171,7 +171,7 @@ def test_the_canvas_shows_the_field_of_the_display_after_recolorings(
     configuration = dataclasses.replace(GMR_9300, lines=240 * smooth, elements=320 * smooth)
     display = Ramtek9300(configuration)
     studio = autocolor.Studio(coupe, display)
-    page = opened(coupe, autocolor.render(coupe, 240, 320, smooth=smooth))
+    page = opened(coupe, autocolor.render(coupe, (320, 240), smooth=smooth))
     assert page.evaluate(SHOWN) == digest(display.field())
     random = np.random.default_rng(4)
     fragments, fields = [], []
@@ -193,7 +193,7 @@ def saved(page: Page, button: str) -> bytes:
 
 def test_a_saved_png_has_the_legend_and_a_page_says_what_is_fixed(opened: Open, tmp_path: Path) -> None:
     scene = autocolor.read_scene(ROOT / "scenes" / "bracket").with_scalar(name="stress", limits=(0, 150))
-    stress = scene, autocolor.render(scene, lines=300, elements=400, smooth=2)
+    stress = scene, autocolor.render(scene, (400, 300), smooth=2)
     page = opened(*stress)
     png = np.asarray(Image.open(io.BytesIO(saved(page, "Save PNG"))).convert("RGB"))
     save_image(tmp_path / "stress.png", *stress)
@@ -245,8 +245,7 @@ def test_saved_values_with_other_light_give_the_picture_of_the_page(
             ({key: value for key, value in variant.settings.items() if key != "exposure"}, not differs),
         ):
             found = scene_with(coupe, settings)
-            size = small.lines // small.smooth, small.elements // small.smooth
-            colors = image(found, autocolor.render(found, *size, smooth=small.smooth))
+            colors = image(found, size=small.size, smooth=small.smooth)
             # The planes of the lights are rounded: a few words are off by one.
             assert ((np.abs(png.astype(int) - colors) <= 2).mean() > 0.999) == is_same
 

@@ -53,12 +53,12 @@ from tests.autocolor.web.twin import (
 from tests.small import car, cube, wall_scene
 from tests.tables import first
 
-SIZE = (24, 32)
+SIZE = (32, 24)
 KEYS = "background elements entries format legend lights lines name notes smooth surfaces variants words"
 
 
 def values_through_json(scene: Scene, **options: Any) -> Any:
-    return json.loads(json.dumps(export_of(scene, render(scene, *SIZE), **options)))
+    return json.loads(json.dumps(export_of(scene, render(scene, SIZE), **options)))
 
 
 # Words, planes and thresholds.
@@ -121,7 +121,7 @@ def test_a_surface_without_extent_has_its_middle_level_in_any_light() -> None:
 @given(scenes())
 def test_an_export_has_the_words_the_entries_and_the_ranges_of_the_display_image(scene: Scene) -> None:
     try:
-        shown = display_image(scene, render(scene, *SIZE))
+        shown = display_image(scene, render(scene, SIZE))
     except InputError:
         assume(False)
     values = values_through_json(scene)
@@ -142,7 +142,7 @@ def test_an_export_has_the_words_the_entries_and_the_ranges_of_the_display_image
 @pytest.mark.parametrize("smooth", first(1, [2, 1]))
 def test_the_legend_of_an_export_is_that_of_the_image(smooth: int) -> None:
     scene = read_scene("scenes/bracket").with_scalar(name="stress")
-    picture = render(scene, 320, 400, smooth=smooth)
+    picture = render(scene, (400, 320), smooth=smooth)
     shown = display_image(scene, picture)
     values = export_of(scene, picture)
     words = with_legend(values)
@@ -165,7 +165,7 @@ def relit(scene: Scene, exposure: Any, strengths: Mapping[str, float]) -> Scene:
 def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     scene: Scene, strengths: tuple[float, ...]
 ) -> None:
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     try:
         shown = display_image(scene, picture)
         values = json.loads(json.dumps(export_of(scene, picture, lights=True)))
@@ -180,7 +180,7 @@ def test_planes_and_thresholds_give_the_words_of_a_rendering_in_other_light(
     # A table that is saved from the page has this exposure.
     held = scene_with(scene, {"exposure": values["lights"]["exposure"]})
     other = relit(held, held.exposure, others)
-    expected = display_image(other, render(other, *SIZE)).words
+    expected = display_image(other, render(other, SIZE)).words
     assert (relit_words(values, others, -1) <= expected).all()
     assert (expected <= relit_words(values, others, 1)).all()
 
@@ -195,11 +195,11 @@ def test_a_surface_with_the_name_of_the_range_of_the_object_has_that_range() -> 
 
 def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> None:
     scene = car().with_light("key", on=False, intensity=3)
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     values = export_of(scene, picture, lights=True)
     for row in values["lights"]["rows"]:
         alone = scene.only_lights(row["name"]).with_light(row["name"], intensity=1).replace(ambient=0)
-        intensity = render(alone, *SIZE).intensity / picture.scale
+        intensity = render(alone, SIZE).intensity / picture.scale
         plane = np.array(unpacked_plane(b64decode(row["plane"])))
         for surface, unit in zip(picture.slices, row["units"], strict=True):
             shares = plane[surface.pixels]
@@ -210,7 +210,7 @@ def test_the_plane_of_a_light_is_within_half_a_unit_of_its_contribution() -> Non
 
 def test_a_picture_from_a_file_has_the_same_planes(tmp_path: Any) -> None:
     scene = car().replace(lights=(*car().lights, Light("spare", (0, -5, 0), on=False, intensity=7)))
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     write_picture(tmp_path / "car.npz", scene, picture)
     saved = read_picture(tmp_path / "car.npz")
     values = export_of(saved.scene, saved.picture, lights=True)
@@ -228,11 +228,11 @@ def test_a_picture_from_a_file_has_the_same_planes(tmp_path: Any) -> None:
 def test_lights_whose_planes_do_not_fit_in_the_budget_are_exported_too() -> None:
     lights = [Light(f"light {number}", (0.1 * number - 1, -3.0, 0.5)) for number in range(20)]
     scene = wall_scene(view=None).replace(lights=tuple(lights))
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     usual = export_of(scene, picture, lights=True)["lights"]
     needed = (BYTES_OF_LIT_PIXEL + 20 * BYTES_OF_LIGHT) * SIZE[0] * SIZE[1]
     with allowing(1.001 * needed / MEMORY):
-        assert len(rendering(scene, *SIZE).picture.light_planes) < 20
+        assert len(rendering(scene, 24, 32).picture.light_planes) < 20
         in_turns = export_of(scene, picture, lights=True)["lights"]
     for row, other in zip(usual["rows"], in_turns["rows"], strict=True):
         assert np.allclose(row["units"], other["units"], rtol=1e-5)
@@ -244,7 +244,7 @@ def test_lights_whose_planes_do_not_fit_in_the_budget_are_exported_too() -> None
 
 
 def lit(edited: Scene, rendered: Scene | None = None) -> object:
-    return export_of(edited, render(rendered or edited, *SIZE), lights=True)
+    return export_of(edited, render(rendered or edited, SIZE), lights=True)
 
 
 @pytest.mark.parametrize(
@@ -277,7 +277,7 @@ def test_what_a_browser_cannot_show_is_refused(act: Callable[[], object], senten
 
 @pytest.mark.parametrize("off", [0, 1])
 def test_more_planes_than_a_browser_holds_are_refused(monkeypatch: pytest.MonkeyPatch, off: int) -> None:
-    picture = render(car(), *SIZE)
+    picture = render(car(), SIZE)
     monkeypatch.setattr(exported, "MOST_PLANE_POINTS", 2 * len(picture.pixels) - off)
     with pytest.raises(InputError, match="must have at most") if off else nullcontext():
         export_of(car(), picture, lights=True)
@@ -285,7 +285,7 @@ def test_more_planes_than_a_browser_holds_are_refused(monkeypatch: pytest.Monkey
 
 def test_a_picture_that_sees_nothing_is_exported() -> None:
     scene = scene_of(cube()).with_view(eye=(0.0, -5.0, 0.0), direction=(0.0, -1.0, 0.0))
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     values = export_of(scene, picture)
     assert (
         averaged(display_image(scene, picture).entries, words_in(values), 1) == image(scene, picture)

@@ -25,7 +25,7 @@ from autocolor.web.exported import export_of
 from autocolor.web.page import page_of, without_comments
 from tests.small import car, sphere
 
-SIZE = (24, 32)
+SIZE = (32, 24)
 WEB = Path(__file__).resolve().parents[3] / "autocolor" / "web"
 
 HOSTILE = [
@@ -66,7 +66,7 @@ class Elements(HTMLParser):
 
 
 def page_with(scene: Scene, **options: Any) -> Elements:
-    return Elements(page_of(export_of(scene, render(scene, *SIZE), **options)))
+    return Elements(page_of(export_of(scene, render(scene, SIZE), **options)))
 
 
 def policy_of(page: Elements) -> dict[str, str]:
@@ -128,7 +128,7 @@ def test_a_page_has_the_lines_of_the_module_without_comments(name: str) -> None:
 
 
 def test_a_page_has_no_part_for_notebooks() -> None:
-    page = page_of(export_of(car(), render(car(), *SIZE)))
+    page = page_of(export_of(car(), render(car(), SIZE)))
     assert "export async function mount" in page
     assert "export default" not in page
     assert "export default" in (WEB / "autocolor.js").read_text("utf-8")
@@ -146,12 +146,12 @@ def test_the_pages_of_the_coupe_are_small(tmp_path: Path) -> None:
 
 def test_a_page_is_never_written_over_unasked(tmp_path: Path) -> None:
     scene = car()
-    picture = render(scene, *SIZE)
+    picture = render(scene, SIZE)
     path = tmp_path / "car.html"
     save_page(path, scene, picture)
     before = path.read_bytes()
     # The page of a picture is the same every time.
-    assert before.decode() == page_of(export_of(scene, render(scene.replace(), *SIZE)))
+    assert before.decode() == page_of(export_of(scene, render(scene.replace(), SIZE)))
     with pytest.raises(OutputError):
         save_page(path, scene.with_surface("body", object_color="navy"), picture)
     assert path.read_bytes() == before
@@ -160,7 +160,7 @@ def test_a_page_is_never_written_over_unasked(tmp_path: Path) -> None:
 
 
 def test_a_page_of_another_scene_is_refused(tmp_path: Path) -> None:
-    picture = render(car(), *SIZE)
+    picture = render(car(), SIZE)
     with pytest.raises(UsageError, match="the scene must come before the picture"):
         save_page(tmp_path / "new.html", picture, car())  # type: ignore[arg-type]
     with pytest.raises(InputError):

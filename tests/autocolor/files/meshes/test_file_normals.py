@@ -65,7 +65,7 @@ def test_a_coarse_sphere_with_its_own_normals_is_lit_as_a_fine_one(tmp_path: Pat
     # Its polygons meet at 45 degrees, which is a crease where normals are computed.
     own = with_normals(sphere(8, 4), tmp_path / "sphere.obj")
     pictures = [
-        render(wall_scene(mesh, **fields), 60, 60)  # type: ignore[arg-type]
+        render(wall_scene(mesh, **fields), (60, 60))  # type: ignore[arg-type]
         for mesh in (sphere(128, 64), own)
     ]
     fine, coarse = (np.where(each.surface_number > 0, each.intensity, np.nan) for each in pictures)
@@ -143,7 +143,7 @@ def test_what_is_written_is_read_with_the_same_normals(tmp_path: Path, name: str
     path = tmp_path / name
     path.parent.mkdir(exist_ok=True)
     if name == "a.npz":
-        write_picture(path, scene, render(scene, 8, 8))
+        write_picture(path, scene, render(scene, (8, 8)))
     else:
         write = output_of(path).write
         assert write is not None

@@ -64,7 +64,7 @@ def test_a_mapped_mesh_gives_the_same_picture_as_the_one_it_was_written_of(
     with pytest.MonkeyPatch.context() as patch:
         if is_large:
             patch.setattr(projection_room, "LARGE", 0)
-        pictures = [render(scene_of(each, view=view), *raster) for each in (found, mesh)]
+        pictures = [render(scene_of(each, view=view), raster) for each in (found, mesh)]
     assert pictures[0].intensity.tobytes() == pictures[1].intensity.tobytes()
     assert pictures[0].surface_number.tobytes() == pictures[1].surface_number.tobytes()
     assert (found.part_names, found.crease_angle) == (mesh.part_names, mesh.crease_angle)
@@ -191,7 +191,7 @@ def test_tables_with_changed_bytes_are_refused_or_give_a_mesh_that_renders(
         found = read(folder)
     except InputError:
         return
-    assert np.isfinite(render(scene_of(found), 6, 8).intensity).all()
+    assert np.isfinite(render(scene_of(found), (8, 6)).intensity).all()
 
 
 HEADER = b"{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }"

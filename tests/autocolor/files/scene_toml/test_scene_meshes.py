@@ -109,7 +109,7 @@ def test_a_mesh_is_from_the_files_that_it_was_read_from(
     assert SOURCES.get(dataclasses.replace(scene.mesh)) is None
     monkeypatch.chdir(folder)
     assert SOURCES.get(read_scene("car.obj", up="y").mesh) == MeshSource(folder, (entry,), None)
-    write_picture("car.npz", scene, render(scene, 12, 16))
+    write_picture("car.npz", scene, render(scene, (16, 12)))
     assert SOURCES.get(read_scene("car.npz").mesh) is None
 
 

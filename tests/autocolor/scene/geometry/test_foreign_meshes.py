@@ -107,7 +107,7 @@ def test_cells_that_are_no_polygons_are_left_out_in_a_sentence(caplog: pytest.Lo
 
 def test_a_scene_is_made_of_a_mesh_of_another_program_and_of_arrays() -> None:
     scenes = [scene_of(trimesh(TRIANGLES)), scene_of(np.array(POINTS), np.array(TRIANGLES))]
-    pictures = [render(scene, 20, 30).intensity for scene in scenes]
+    pictures = [render(scene, (30, 20)).intensity for scene in scenes]
     assert pictures[0].any()
     assert (pictures[0] == pictures[1]).all()
     assert [part.name for part in scenes[0].parts] == ["mesh"]
