@@ -31,18 +31,15 @@ LEAST_REACH: Final = 1e-20
 
 
 def soften(fraction: RealArray[Any]) -> RealArray[Any]:
-    """The share of the light at a fraction t of the width of a soft edge, in place.
+    """The share of the light at a fraction t of the width of a soft edge.
 
     It is 0 up to t = 0, 1 from t = 1 on, and t^2 (3 - 2 t) between. Assumed: this is the polynomial of the
     lowest degree that begins and ends with a slope of 0, so that neither end shows as a seam. Fractions must
     be finite.
     """
-    np.clip(fraction, 0, 1, out=fraction)
-    rest = np.multiply(fraction, -2)
-    rest += 3
-    rest *= fraction
-    fraction *= rest
-    return fraction
+    t: RealArray[Any] = np.clip(fraction, 0, 1)
+    share: RealArray[Any] = t * ((3 - 2 * t) * t)
+    return share
 
 
 def soft_cone_share(cos_light: RealArray[Any], inner_angle: float, cone_angle: float) -> RealArray[Any]:
@@ -56,9 +53,7 @@ def soft_cone_share(cos_light: RealArray[Any], inner_angle: float, cone_angle: f
     # Rounded like the cosines that it is subtracted from.
     rim = kind(math.cos(math.radians(cone_angle)))
     width = max(math.cos(math.radians(inner_angle)) - float(rim), float(np.finfo(kind).eps))
-    fraction = np.subtract(cos_light, rim)
-    fraction *= kind(1 / width)
-    return soften(fraction)
+    return soften((cos_light - rim) * kind(1 / width))
 
 
 def falloff_share(light: Light, reach: float, length: RealArray[Any]) -> RealArray[Any]:
@@ -68,9 +63,7 @@ def falloff_share(light: Light, reach: float, length: RealArray[Any]) -> RealArr
     Rejected: 1/d^2, which has no upper limit. A point close to the light would take the whole range of levels
     and leave all others black. This falloff stays within 0 to 1, and ends.
     """
-    left: RealArray[Any] = np.divide(length, length.dtype.type(-reach))
-    left += 1
-    np.maximum(left, 0, out=left)
+    left: RealArray[Any] = np.maximum(1 - length / length.dtype.type(reach), 0)
     return left if light.falloff == "linear" else left * left
 
 
@@ -88,6 +81,12 @@ Axis = Literal["x", "y", "z"]
 
 FlapEnd = Literal["minimum", "maximum"]
 """The fields of a flap that are coordinates."""
+
+
+class Plane(NamedTuple):
+    """The plane of a half-space, by its name."""
+
+    half_space: str
 
 
 class LitSide(NamedTuple):
@@ -111,9 +110,7 @@ def edge_share(side: LitSide, points: RealArray[Any]) -> RealArray[Any]:
     if side.edge_width == 0:
         return is_inside(side, points).astype(points.dtype)
     row = (side.row / max(side.edge_width, LEAST_WIDTH)).astype(points.dtype)
-    fraction = row[:3] @ points
-    fraction += row[3]
-    return soften(fraction)
+    return soften(row[:3] @ points + row[3])
 
 
 def is_inside(side: LitSide, points: RealArray[Any]) -> Booleans:
@@ -123,19 +120,17 @@ def is_inside(side: LitSide, points: RealArray[Any]) -> Booleans:
     return inside
 
 
-def sides_of(light: Light, points: VisiblePoints) -> list[LitSide]:
-    """The sides of the flaps and the half-spaces of a light that are on."""
-    return [*flap_sides(light, points).values(), *half_space_sides(light, points).values()]
-
-
 def flaps_of(light: Light) -> dict[Axis, Flap | None]:
     """The flap of a light along each axis, on or off; None where there is none."""
     return {"x": light.flaps.x, "y": light.flaps.y, "z": light.flaps.z}
 
 
-def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], LitSide]:
-    """The sides of the flaps that are on, without ends at infinity."""
-    sides: dict[tuple[Axis, FlapEnd], LitSide] = {}
+def sides_of(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd] | Plane, LitSide]:
+    """The sides of the flaps and the half-spaces of a light that are on, without ends at infinity.
+
+    A carried half-space is placed with its light.
+    """
+    sides: dict[tuple[Axis, FlapEnd] | Plane, LitSide] = {}
     for number, (axis, flap) in enumerate(flaps_of(light).items()):
         if flap is None or not flap.on:
             continue
@@ -145,19 +140,13 @@ def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd]
                 sign = 1.0 if end == "minimum" else -1.0
                 x, y, z = (sign if row == number else 0.0 for row in range(3))
                 sides[axis, end] = side_of(points, f"flap {axis}", (x, y, z), sign * limit, flap.edge_width)
-    return sides
-
-
-def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, LitSide]:
-    """The sides of the half-spaces that are on, by name; a carried half-space is placed with its light."""
-    sides: dict[str, LitSide] = {}
     for half_space in light.half_spaces:
         if half_space.on:
             placed = detached(half_space, light)
             direction = unit_vector(placed.direction)
             least = sum(a * b for a, b in zip(direction, placed.point, strict=True))
             name = f"half-space {half_space.name}"
-            sides[half_space.name] = side_of(points, name, direction, least, half_space.edge_width)
+            sides[Plane(half_space.name)] = side_of(points, name, direction, least, half_space.edge_width)
     return sides
 
 

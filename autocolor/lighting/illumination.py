@@ -39,13 +39,10 @@ class Previous(NamedTuple):
 
 
 @underflowing
-def illuminate(
-    scene: Scene, points: VisiblePoints, previous: Previous | None = None, with_controls: bool = True
-) -> Picture:
+def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = None) -> Picture:
     """The picture of the visible points in the light of a scene.
 
-    Without controls, each light shines in all directions, at all distances and on all parts. Such a picture
-    cannot be a previous one. Raises InputError for intensities that float32 can't hold.
+    Raises InputError for intensities that float32 can't hold.
     """
     models = {
         surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.model
@@ -66,7 +63,7 @@ def illuminate(
         for name, of_light in weights.lights.items()
     }
     cameras = {
-        name: camera_light(lights[name], points, with_controls)
+        name: camera_light(lights[name], points)
         for name, update in updates.items()
         if update.changed_surfaces
     }

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal
 
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, chunks, columns, dot, underflowing, unit_vector
 from autocolor.errors import UsageError
-from autocolor.lighting.controls import Axis, FlapEnd, flap_sides, flaps_of, half_space_sides, is_inside
+from autocolor.lighting.controls import Axis, FlapEnd, Plane, flaps_of, is_inside, sides_of
 from autocolor.lighting.light import CameraLight, exact_rays_to, is_within, rays_to
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import (
@@ -56,12 +56,6 @@ CELL: Final = 16
 CONE: Final = "cone"
 
 
-class Plane(NamedTuple):
-    """The rim of a half-space: where its plane ends the light, by the name of the half-space."""
-
-    half_space: str
-
-
 Rim = Literal["cone"] | tuple[Axis, FlapEnd] | Plane
 """The rim of a cone, of an end of the flap along an axis, or of a half-space."""
 
@@ -72,12 +66,12 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
 
     This is the inverse of `highlight_placed`. If a surface is named, only its pixels count. The result is
     None if no visible point has both cos(E) and cos(I) above 0. The light may be off, and its controls do not
-    matter. If words stand for normals, light and eye are taken as far away. Measured on the coupe: 1.4 ms.
-    Raises UsageError for an unknown light or surface.
+    matter. If words stand for normals, light and eye are taken as far away. Raises UsageError for an unknown
+    light or surface.
     """
     scene, points = sight.scene, sight.points
     row = scene.light_in_world(light)
-    camera = camera_light(row, points, with_controls=False)
+    camera = camera_light(row, points)
     number = None if surface is None else scene.surfaces.index(scene.surface(surface)) + 1
     most, found = 0.0, None
     for each in points.slices:
@@ -125,8 +119,7 @@ def seen_highlight(picture: Picture, light: str, surface: str | None = None) -> 
 
     Assumed: this is the brightest pixel of the light's specular plane in the square of CELL pixels that has
     the largest sum. A bright edge of a few pixels has the largest cos(E), but a broad reflection is what the
-    eye sees. None for a light without planes, or without specular reflection there. Measured on the coupe:
-    0.6 ms.
+    eye sees. None for a light without planes, or without specular reflection there.
     """
     planes = picture.light_planes.get(light)
     if planes is None:
@@ -252,10 +245,8 @@ def _inside(points: VisiblePoints, light: Light) -> Iterator[tuple[Rim, Booleans
             rays = rays_to(camera, points.rows[:, chunk.pixels])
             inside[chunk.pixels] = is_within(rays, light.cone_angle)
         yield CONE, inside
-    for end, side in flap_sides(light, points).items():
-        yield end, is_inside(side, points.rows[POINT])
-    for name, side in half_space_sides(light, points).items():
-        yield Plane(name), is_inside(side, points.rows[POINT])
+    for rim, side in sides_of(light, points).items():
+        yield rim, is_inside(side, points.rows[POINT])
 
 
 def _are_on_one_surface(points: VisiblePoints, one: Indices, other: Indices) -> Booleans:

@@ -29,7 +29,7 @@ def uncertain_share(light: CameraLight, rays: Rays, rounding: float) -> Booleans
     Each cos(L) is off by at most `rounding`.
     """
     row, cosines = light.row, rays.light
-    if cosines is None or row.at_infinity:
+    if cosines is None:
         return None
     uncertain = is_steep(cosines, row.concentration, rounding)
     if row.cone_angle is not None:

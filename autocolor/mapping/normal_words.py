@@ -273,22 +273,16 @@ def light_at_normals(
     )
     lights = tuple(far_light(light, middle) for light in scene.lights_in_world)
     far_scene = with_values(scene, {"view": view, "lights": lights})
-    return illuminate(far_scene, points, with_controls=False)
+    return illuminate(far_scene, points)
 
 
 def far_light(light: Light, middle: Vector) -> Light:
-    """A light of the world as a point at a distance of 1 from the origin, in its direction from the middle.
+    """A light of the world as a point source at a distance of 1 from the origin, in its direction.
 
-    Its links to parts are left out. It must be used without its controls.
+    Of its controls, the links to surfaces stay.
     """
-    return with_values(
-        light,
-        {
-            "position": direction_to_light(light, middle),
-            "at_infinity": False,
-            "links": with_values(light.links, {"only_parts": None, "except_parts": None}),
-        },
-    )
+    links = with_values(light.links, {"only_parts": None, "except_parts": None})
+    return Light(light.name, direction_to_light(light, middle), light.intensity, light.on, links=links)
 
 
 # Cells. The visible normals of a surface are divided into few cells, each with one normal that stands for it.
