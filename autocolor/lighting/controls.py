@@ -23,11 +23,9 @@ FARTHEST: Final = 1e15
 
 The rays of such a light are parallel, and float32 can hold the square of the distance."""
 
-LEAST_WIDTH: Final = 1e-20
-"""The least edge width, in units: far below the rounding of points, and float32 holds any quotient by it."""
-
-LEAST_REACH: Final = 1e-20
-"""The least reach, in units: float32 can hold any distance as a multiple of it."""
+LEAST_LENGTH: Final = 1e-20
+"""The least edge width and reach, in units: far below the rounding of points, and float32 holds any quotient
+by it."""
 
 
 def soften(fraction: RealArray[Any]) -> RealArray[Any]:
@@ -71,7 +69,7 @@ def reach_of(light: Light, points: VisiblePoints) -> float | None:
     """The reach of a light with a falloff, in the unit of some points; None without."""
     if light.falloff == "none" or light.reach is None:
         return None
-    return min(max(light.reach / points.unit, LEAST_REACH), FARTHEST)
+    return min(max(light.reach / points.unit, LEAST_LENGTH), FARTHEST)
 
 
 # Flaps and half-spaces.
@@ -109,7 +107,7 @@ def edge_share(side: LitSide, points: RealArray[Any]) -> RealArray[Any]:
     """The share that an edge leaves at some points, (3, k): none on its plane, all from its width on."""
     if side.edge_width == 0:
         return is_inside(side, points).astype(points.dtype)
-    row = (side.row / max(side.edge_width, LEAST_WIDTH)).astype(points.dtype)
+    row = (side.row / max(side.edge_width, LEAST_LENGTH)).astype(points.dtype)
     return soften(row[:3] @ points + row[3])
 
 

@@ -62,11 +62,7 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         )
         for name, of_light in weights.lights.items()
     }
-    cameras = {
-        name: camera_light(lights[name], points)
-        for name, update in updates.items()
-        if update.changed_surfaces
-    }
+    cameras = {name: camera_light(lights[name], points) for name in updates if updates[name][1]}
 
     # Finish a chunk before the next, so that its rows and planes are fetched from memory only once.
     relative = np.empty(len(points.pixels), np.float32)
@@ -75,19 +71,19 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         sums[:] = weights.ambient
         scratch = np.empty_like(sums)
         numbers = {surface.surface_number for surface in chunk.slices}
-        for name, update in updates.items():
-            if not numbers.isdisjoint(update.changed_surfaces):
-                shade(update.planes.values, cameras[name], points, chunk, models)
-            mixed = scratch if update.planes.mixed is None else update.planes.mixed[chunk.pixels]
-            if update.to_mix:
-                mix(update.planes, chunk, out=mixed)
+        for name, (planes, surfaces, to_mix) in updates.items():
+            if not numbers.isdisjoint(surfaces):
+                shade(planes.values, cameras[name], points, chunk, models)
+            mixed = scratch if planes.mixed is None else planes.mixed[chunk.pixels]
+            if to_mix:
+                mix(planes, chunk, out=mixed)
             sums += mixed
 
     # A light that does not shine keeps its planes as long as no model changes.
     valid = {} if changed else reusable
-    valid |= {name: update.planes for name, update in updates.items() if name not in in_turns}
-    planes = {light.name: valid[light.name] for light in scene.lights if light.name in valid}
-    for each in planes.values():
+    valid |= {name: planes for name, (planes, _, _) in updates.items() if name not in in_turns}
+    light_planes = {light.name: valid[light.name] for light in scene.lights if light.name in valid}
+    for each in light_planes.values():
         read_only(each.values)
         if each.mixed is not None:
             read_only(each.mixed)
@@ -100,7 +96,7 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         points.slices,
         relative,
         weights.scale,
-        planes,
+        light_planes,
         visible_parts=points.parts,
     )
 
@@ -126,32 +122,21 @@ def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> 
     }
 
 
-class _PlaneUpdate(NamedTuple):
-    """The planes of a light that shines, and the computations that they need.
-
-    The values of the planes are computed on the surfaces `changed_surfaces`. If `to_mix`, the weighted sum of
-    both planes is computed everywhere.
-    """
-
-    planes: LightPlanes
-    changed_surfaces: Set[int]
-    to_mix: bool
-
-
 def _plane_update(
     old: LightPlanes | None, changed: Set[int], weights: SurfaceWeights, count: int, shared: Singles | None
-) -> _PlaneUpdate:
-    """The update of a light that shines on `count` points, given its reusable planes and changed surfaces.
+) -> tuple[LightPlanes, Set[int], bool]:
+    """The planes of a light that shines on `count` points, given its reusable planes and changed surfaces.
 
-    New planes are computed in the array `shared`, (2, count), if it is given, else in an array of their own.
+    Also the surfaces on which to compute them, and whether to mix them. New planes are in the array `shared`,
+    (2, count), if it is given, else in an array of their own.
     """
     if old is None:
         values = np.empty((2, count), np.float32) if shared is None else shared
-        return _PlaneUpdate(LightPlanes(values, weights), weights.keys(), to_mix=True)
+        return LightPlanes(values, weights), weights.keys(), True
     if changed:
-        return _PlaneUpdate(LightPlanes(old.values.copy(), weights), changed, to_mix=True)
+        return LightPlanes(old.values.copy(), weights), changed, True
     if old.weights != weights:
-        return _PlaneUpdate(LightPlanes(old.values, weights), changed, to_mix=True)
+        return LightPlanes(old.values, weights), changed, True
     # This light stays while another light is edited: keep its mix for further edits.
     mixed = np.empty(count, np.float32) if old.mixed is None else old.mixed
-    return _PlaneUpdate(LightPlanes(old.values, weights, mixed), changed, to_mix=old.mixed is None)
+    return LightPlanes(old.values, weights, mixed), changed, old.mixed is None

@@ -28,18 +28,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import (
-    Booleans,
-    Floats,
-    Indices,
-    RealArray,
-    Singles,
-    columns,
-    dot,
-    lengths,
-    normalized,
-    power,
-)
+from autocolor.arrays import Booleans, Floats, Indices, RealArray, columns, dot, lengths, normalized, power
 from autocolor.lighting.controls import LitSide, edge_share, falloff_share, soft_cone_share
 from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import Phong, ReflectionModel
@@ -127,7 +116,7 @@ def rays_to(light: CameraLight, rows: RealArray[Any]) -> Rays:
     return Rays(length, cos_incidence, cos_eye, cos_light, rows)
 
 
-def exact_rays_to(light: CameraLight, rows: Singles) -> Rays:
+def exact_rays_to(light: CameraLight, rows: RealArray[Any]) -> Rays:
     """The same, with normals and reflected views whose lengths are not rounded to float32."""
     exact = rows.astype(np.float64)
     for vectors in (exact[NORMAL], exact[REFLECTED_VIEW]):

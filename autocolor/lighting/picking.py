@@ -17,28 +17,14 @@ from autocolor.errors import UsageError
 from autocolor.lighting.controls import Axis, FlapEnd, Plane, flaps_of, is_inside, sides_of
 from autocolor.lighting.light import CameraLight, exact_rays_to, is_within, rays_to
 from autocolor.lighting.picture import Picture
-from autocolor.lighting.rays import (
-    camera_light,
-    direction_between,
-    direction_to_eye,
-    direction_to_light,
-    fast_rays,
-    middle_of,
-)
+from autocolor.lighting.rays import camera_light, direction_to_eye, direction_to_light, fast_rays, middle_of
 from autocolor.lighting.shading import SPECULAR
 from autocolor.scene.changes import LightChanges
 from autocolor.scene.following import light_frame
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import NORMALS, Scene
 from autocolor.visibility.projection import focal_length
-from autocolor.visibility.visible_points import (
-    NORMAL,
-    PIXELS_AT_ONCE,
-    POINT,
-    Seen,
-    Sight,
-    VisiblePoints,
-)
+from autocolor.visibility.visible_points import NORMAL, PIXELS_AT_ONCE, POINT, Seen, Sight, VisiblePoints
 
 ROUNDING: Final = 1e-5
 """Assumed: above the rounding of a cosine in float32, which many pixels around a highlight may share."""
@@ -54,7 +40,6 @@ CELL: Final = 16
 """Assumed: pixels across the squares in which the light of a highlight is added up."""
 
 CONE: Final = "cone"
-
 
 Rim = Literal["cone"] | tuple[Axis, FlapEnd] | Plane
 """The rim of a cone, of an end of the flap along an axis, or of a half-space."""
@@ -74,9 +59,7 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
     camera = camera_light(row, points)
     number = None if surface is None else scene.surfaces.index(scene.surface(surface)) + 1
     most, found = 0.0, None
-    for each in points.slices:
-        if number is not None and each.surface_number != number:
-            continue
+    for each in (each for each in points.slices if number in (None, each.surface_number)):
         for chunk in chunks(each.stop, PIXELS_AT_ONCE, each.start):
             if scene.words == NORMALS:
                 cosines = _cosines_from_afar(scene, row, points, chunk)
@@ -127,9 +110,7 @@ def seen_highlight(picture: Picture, light: str, surface: str | None = None) -> 
     number = None if surface is None else picture.surfaces.index(surface) + 1
     best, largest = None, 0.0
     across = -(-picture.elements // CELL)
-    for each in picture.slices:
-        if number is not None and each.surface_number != number:
-            continue
+    for each in (each for each in picture.slices if number in (None, each.surface_number)):
         values, pixels = planes.values[SPECULAR, each.pixels], picture.pixels[each.pixels]
         lines, elements = np.divmod(pixels, picture.elements)
         cells = lines // CELL * across + elements // CELL
@@ -175,7 +156,7 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     point, normal, reflected = (np.array(each) for each in (seen.point, seen.normal, seen.reflected_view))
     if scene.words == NORMALS:
         point = np.array(middle_of(scene))
-        to_eye = np.array(direction_between(middle_of(scene), scene.view.eye))
+        to_eye = direction_to_eye(scene) @ scene.view.axes
         reflected = 2 * (normal @ to_eye) * normal - to_eye
     # N.R = N.V is cos(I) of the light in its new place.
     if reflected @ normal <= 0:
@@ -204,9 +185,8 @@ def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
     There are arrays for the cone, for the finite ends of the flaps that are on, and for the half-spaces that
     are on. An array is empty if the rim is not visible. A pixel of a rim is inside, and one of its four
     neighbors is outside on the same surface: so no silhouette is a rim. Every control has its own rim, even
-    where another control leaves nothing of the light. The rim of a soft edge is its dark end.
-
-    Raises UsageError for an unknown light.
+    where another control leaves nothing of the light. The rim of a soft edge is its dark end. Raises
+    UsageError for an unknown light.
     """
     points = sight.points
     places = np.empty(points.lines * points.elements, np.intp)
@@ -256,9 +236,8 @@ def _are_on_one_surface(points: VisiblePoints, one: Indices, other: Indices) -> 
     depth = at_one[2] + np.float32(points.origin[2])
     focal = focal_length(points.lines, points.elements, points.view.field_of_view)
     most = depth * np.float32(LARGEST_GAP / focal)
-    close = np.ones(len(one), np.bool_)
-    for places in (one, other):
-        close &= np.abs(dot(points.rows[NORMAL].take(places, axis=1), between)) <= most
+    normals = (points.rows[NORMAL].take(places, axis=1) for places in (one, other))
+    close: Booleans = np.logical_and.reduce([np.abs(dot(each, between)) <= most for each in normals])
     return close
 
 
@@ -271,7 +250,7 @@ def cone_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     seen = _on_surface(seen, "a cone")
     row = scene.light_in_world(light)
     assert row.axis is not None
-    toward = direction_between(row.position, seen.point)
+    toward = np.subtract(seen.point, row.position)
     # The arc tangent is exact at all angles, which the arc cosine is not.
     tangent = math.hypot(*np.cross(row.axis, toward)), float(np.dot(row.axis, toward))
     angle = max(math.degrees(math.atan2(*tangent)), LEAST_CONE)

@@ -138,9 +138,8 @@ def _reflect(
 ) -> None:
     """Fill in both planes at some points; 0 where `is_lit` is false.
 
-    The surfaces of the points end at `ends` and have these `models`. Points at which the `rounding` of
-    cosines counts are computed again by the definitions: the specular plane only, where it counts in the
-    model's factor alone.
+    The surfaces of the points end at `ends` and have these `models`. Points at which `rounding` counts
+    are computed again by the definitions: the specular plane only, if it counts in the factor alone.
     """
     share = None if is_lit is None or is_lit.all() else is_lit.astype(np.float32)
     for _, left in shares_of(light, rays):
