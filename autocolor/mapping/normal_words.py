@@ -16,7 +16,7 @@ and darker with that as a light moves: for N = 100 the mean error on a ball is u
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -56,6 +56,7 @@ from autocolor.visibility.visible_points import (
     SurfaceSlice,
     VisibleParts,
     VisiblePoints,
+    surface_slices,
 )
 
 
@@ -165,29 +166,25 @@ def words_of_normals(picture: Picture, ranges: Mapping[str, LevelRange]) -> tupl
     """
     assert picture.normals is not None
     raster = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
-    nothing = np.empty((3, 0), np.float32)
-    words, normals, samples, counts = [np.empty(0, np.intp)], [nothing], [nothing], [np.empty(0, np.intp)]
-    slices, sample_slices = [], []
-    start = sample_start = 0
+    words, cells = [np.empty(0, np.intp)], dict[int, Cells]()
     for surface in picture.slices:
         first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
-        cells = cells_of(picture.normals[:, surface.pixels], levels)
-        number, count = surface.surface_number, cells.normals.shape[1]
-        raster[picture.pixels[surface.pixels]] = first + cells.numbers
-        words.append(np.arange(first, first + count))
-        normals.append(cells.normals)
-        samples.append(cells.samples)
-        counts.append(cells.counts)
-        slices.append(SurfaceSlice(number, start, start + count))
-        start += count
-        sample_slices.append(SurfaceSlice(number, sample_start, sample_start + cells.samples.shape[1]))
-        sample_start = sample_slices[-1].stop
+        found = cells[surface.surface_number] = cells_of(picture.normals[:, surface.pixels], levels)
+        raster[picture.pixels[surface.pixels]] = first + found.numbers
+        words.append(np.arange(first, first + found.normals.shape[1]))
+    nothing = cells_of(np.empty((3, 0), np.float32), 1)
+    normals, _, samples, counts = zip(nothing, *cells.values(), strict=True)
+
+    def slices_of(rows: Sequence[Singles]) -> tuple[SurfaceSlice, ...]:
+        sizes = [each.shape[1] for each in rows[1:]]
+        return surface_slices(np.bincount(np.array([*cells], np.intp), sizes, minlength=1).astype(np.int64))
+
     stand_for = WordNormals(
         read_only(np.concatenate(words)),
         read_only(np.concatenate(normals, axis=1)),
-        tuple(slices),
+        slices_of(normals),
         read_only(np.concatenate(samples, axis=1)),
-        tuple(sample_slices),
+        slices_of(samples),
         read_only(np.concatenate(counts)),
     )
     return read_only(raster).reshape(picture.lines, picture.elements), stand_for

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Picture, Scene, render
-from autocolor.mapping.intensity import words_of
+from autocolor.mapping.intensity import mapped_ranges, words_of
 from autocolor.mapping.ranges import level_ranges
 from autocolor.testing import scenes
 from tests.closeness import all_close
@@ -67,7 +67,8 @@ def test_every_light_and_the_ambient_k_times_as_strong_change_no_word(scene: Sce
 
 def words(scene: Scene) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
     ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
-    return words_of(render(scene, (16, 12)), ranges, scene.scaling, scene.mapping)
+    picture = render(scene, (16, 12))
+    return words_of(picture, ranges, mapped_ranges(picture, scene.scaling, "auto"), scene.mapping)
 
 
 @given(scenes())
