@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, HalfSpace, Light, Scene, View, render
+from autocolor import Flap, Flaps, HalfSpace, Light, Mesh, View, render, scene_of
 from autocolor.checks import Vector
 from autocolor.lighting.controls import (
     FARTHEST,
@@ -23,10 +23,10 @@ from autocolor.lighting.controls import (
 from autocolor.lighting.light import is_within, shares_of
 from autocolor.lighting.rays import camera_light, fast_rays
 from autocolor.scene.lights import Links
-from autocolor.testing import directions, lights, numbers, scenes, some_of, vectors
+from autocolor.testing import directions, lights, numbers, vectors
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.small import wall, wall_scene
+from tests.small import cube, sphere, wall, wall_scene
 
 # test_shading.py compares what all controls leave with their closed forms.
 
@@ -91,7 +91,7 @@ def test_a_wall_that_lies_on_a_plane_is_lit_and_at_a_soft_edge_it_is_dark(fields
         assert dark.intensity.max() < 1e-5 * whole.intensity.max()
 
 
-@given(vectors(numbers(-1e30, 1e30)), directions(), numbers(1e-30, 1e30) | st.just(0.0))
+@given(vectors(numbers(-1e30, 1e30)), directions(), st.sampled_from([0.0, 1e-300, 1e-60, 1e-30, 1.0, 1e30]))
 def test_planes_however_far_and_edges_of_any_width_leave_finite_light(
     point: Vector, direction: Vector, edge_width: float
 ) -> None:
@@ -151,18 +151,24 @@ def test_a_light_beyond_all_that_falls_gives_nothing_here(distance: float, reach
     assert not render(wall_scene(lights=[light]), (4, 4)).intensity.any()
 
 
-PARTS = ["part 0", "part 1"]
-
-
-@given(scenes(), lights(), some_of(PARTS), st.booleans())
+@pytest.mark.parametrize(
+    ("links", "lit"),
+    [
+        ({"only_parts": ("cube",)}, {2}),
+        ({"except_parts": ("cube",)}, {1}),
+        ({"only_parts": ()}, set()),
+        ({"except_parts": ()}, {1, 2}),
+    ],
+)
 def test_a_light_linked_to_parts_is_the_light_of_all_where_they_are_and_nothing_elsewhere(
-    scene: Scene, light: Light, names: tuple[str, ...], is_only: bool
+    links: dict[str, Any], lit: set[int]
 ) -> None:
-    links = Links(only_parts=names) if is_only else Links(except_parts=names)
-    dark = scene.replace(ambient=0.0)
-    free = render(dark.replace(lights=(light,)), (16, 12))
-    linked = render(dark.replace(lights=(light.replace(links=links),)), (16, 12))
-    numbers = [number for number, name in enumerate(PARTS, 1) if (name in names) == is_only]
-    is_lit = np.isin(free.part_number, numbers)
-    assert not linked.intensity[~is_lit].any()
-    assert linked.intensity[is_lit] == pytest.approx(free.intensity[is_lit], rel=1e-5, abs=1e-30)
+    light = Light("light", (3, -4, 3))
+    scene = scene_of(Mesh.joined([sphere(12, 8), cube(1.4)]), lights=[light]).replace(ambient=0.0)
+    free = render(scene, (32, 24))
+    linked = render(scene.replace(lights=(light.replace(links=Links(**links)),)), (32, 24))
+    for number in (1, 2):
+        here = free.part_number == number
+        expected = free.intensity[here] if number in lit else np.zeros(np.count_nonzero(here))
+        assert free.intensity[here].any()
+        assert linked.intensity[here] == pytest.approx(expected, rel=1e-5)
