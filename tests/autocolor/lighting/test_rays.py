@@ -52,7 +52,7 @@ def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, d
         assert cos_eye[number] == pytest.approx(dot(unit(ray), reflected[number].tolist()), abs=error)
 
 
-@given(numbers(1.05, 3.0) | numbers(3.0, 1000.0), directions(), outside_views())
+@given(st.sampled_from([1.02, 1.05, 1.1, 1.2, 2.0, 30.0, 1e3]), directions(), outside_views())
 def test_cosines_near_1_are_off_by_at_most_the_rounding(distance: float, side: Vector, view: View) -> None:
     points = visible_surfaces(BALL, view, (1,), 30, 40)
     light = Light("light", times(distance, unit(side)), aim=(0.1, 0.0, 0.05), concentration=1)

@@ -185,6 +185,13 @@ def test_the_spot_of_a_light_that_almost_touches_the_wall_is_right(
         assert_exact_on_wall(light, visible_surfaces(wall(), view, (1,), 12, 16), Phong())
 
 
+@pytest.mark.parametrize("gap", [0.03, 0.003])
+def test_a_light_close_to_a_wall_that_is_seen_as_a_whole_is_as_exact(gap: float) -> None:
+    points = visible_surfaces(wall(), View((0.4, -4.0, 0.3), target=(0, 0, 0)), (1,), 24, 32)
+    for x, _, z in points.world_points[::41].tolist():
+        assert_exact_on_wall(Light("light", (x, -gap, z)), points, Phong(), from_rim=1e-3)
+
+
 @pytest.mark.parametrize("distance", first(2, [5.0, 1e4, 211.0, 500.0, 5e3]))
 @pytest.mark.parametrize("gap", [0.3, 0.01])
 @pytest.mark.parametrize("concentration", [0, 40])
