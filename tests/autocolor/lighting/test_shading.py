@@ -51,11 +51,11 @@ MODELS: list[ReflectionModel] = [
     Phong(4.0, SpecularGrowth(fresnel_curve=((0, 0.04), (50, 0.06), (70, 0.17), (80, 0.39), (90, 1)))),
 ]
 STEEP: list[ReflectionModel] = [
-    Phong(333.3),
+    Phong(1e5),
     BlinnPhong(1e5),
     CookTorrance(0.05),
     *(model(exponent) for model in (Phong, BlinnPhong) for exponent in (101.0, 1e3)),
-    Phong(1e5),
+    Phong(333.3),
     *(CookTorrance(roughness) for roughness in (0.2, 0.02)),
 ]
 
@@ -183,6 +183,20 @@ def test_the_spot_of_a_light_that_almost_touches_the_wall_is_right(
     directed = Light("light", place, direction=(toward[0], 1.0, toward[1]), concentration=2)
     for light in (Light("light", place), directed):
         assert_exact_on_wall(light, visible_surfaces(wall(), view, (1,), 12, 16), Phong())
+
+
+LOW = [
+    *({"concentration": concentration} for concentration in (0.5, 1.0, 40.0, 200.0)),
+    {"cone_angle": 120.0},
+    {"falloff": "linear", "reach": 1.0},
+]
+
+
+@pytest.mark.parametrize("fields", LOW, ids=repr)
+def test_a_light_that_shines_along_a_wall_is_as_the_paper_says(fields: dict[str, Any]) -> None:
+    points = visible_surfaces(wall(), View((0.4, -4.0, 0.3), target=(0, 0, 0)), (1,), 24, 32)
+    light = Light("light", (0.2, -0.3, 0.1), direction=(1.0, 0.3, 0.2), **fields)
+    assert_exact_on_wall(light, points, Phong(), from_rim=1e-3)
 
 
 @pytest.mark.parametrize("gap", [0.03, 0.003])
@@ -496,7 +510,3 @@ REFUSED = [
     ),
 ]
 test_intensities_that_float32_cannot_hold_are_refused = refused(lambda scene: render(scene, (12, 9)), REFUSED)
-
-
-def test_nothing_at_all_has_a_scale_of_1() -> None:
-    assert light_mix({}, (), (), 0.0, ()) == (1.0, np.float32(0), {})
