@@ -98,12 +98,16 @@ def test_an_edit_of_s_that_grows_keeps_every_plane_and_one_of_its_growth_its_own
         assert planes.values[1, of_cube.pixels].tobytes() != old[1, of_cube.pixels].tobytes()
 
 
-def test_a_light_that_was_off_is_computed_when_a_model_changes_as_it_is_switched_on() -> None:
-    scene = two_surfaces().with_light("key", on=False)
+def test_a_light_that_moved_or_was_off_when_a_model_changed_is_computed_again() -> None:
+    scene = two_surfaces()
     points = points_of(scene)
+    off = scene.with_light("key", on=False).with_surface("cube", exponent=3)
+    on = off.with_light("key", on=True)
     previous = Previous(scene, illuminate(scene, points))
-    changed = scene.with_light("key", on=True).with_surface("cube", exponent=3)
-    assert same(illuminate(changed, points, previous), illuminate(changed, points))
+    for changed in (off, on, on.with_light("key", position=(0, -3, 1))):
+        picture = illuminate(changed, points, previous)
+        assert same(picture, illuminate(changed, points))
+        previous = Previous(changed, picture)
 
 
 def test_every_plane_of_a_picture_is_read_only() -> None:

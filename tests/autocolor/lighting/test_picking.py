@@ -174,7 +174,10 @@ def test_the_highlight_is_at_the_largest_cosine_of_all_surfaces_or_of_a_surface(
 
 def test_there_is_no_highlight_where_no_light_is_reflected_to_the_eye() -> None:
     behind = wall_scene(lights=[Light("light", (0.0, 3.0, 0.0))])
-    assert highlight_of(sight_of(rendered(behind)), "light") is None
+    # L . R is above 0, but the light is behind the wall.
+    low = wall_scene(view=View((0.0, -0.5, 4.0), target=(0, 0, 0)), lights=[Light("light", (0, 0.3, -4))])
+    for dark in (behind, low, low.replace(words="normals")):
+        assert highlight_of(sight_of(rendered(dark)), "light") is None
     before = behind.with_light("light", position=(0.0, -3.0, 0.0))
     # A wall behind the wall is in use, but not seen.
     hidden = grid(1, 1, (-0.5, 1.0, -0.5), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), "hidden")

@@ -7,11 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Light, Picture, Scene, render
+from autocolor import Picture, Scene, render
 from autocolor.mapping.intensity import mapped_ranges, words_of
 from autocolor.mapping.ranges import level_ranges
 from autocolor.testing import scenes
-from tests.closeness import all_close
 from tests.small import sphere, wall_scene
 
 
@@ -96,16 +95,6 @@ def test_the_planes_of_the_lights_add_up_to_the_picture(scene: Scene) -> None:
                 if light.links.shines_on_surface(surface.name):
                     total += np.where(picture.surface_number == number, both, 0)
     assert picture.intensity == close_to(total, picture.ranges.whole.maximum)
-
-
-@pytest.mark.parametrize("intensity", [1e30, 1e-30])
-def test_strong_and_weak_lights_are_no_different(intensity: float) -> None:
-    one, other = (
-        render(wall_scene(sphere(), lights=[Light("key", (2, -3, 3), strength)]), (32, 24))
-        for strength in (1.0, intensity)
-    )
-    assert one.relative.tobytes() == other.relative.tobytes()
-    assert all_close(other.intensity, one.intensity * np.float32(intensity), rel=1e-6)
 
 
 @given(scenes())
