@@ -104,7 +104,8 @@ def test_a_light_that_moved_or_was_off_when_a_model_changed_is_computed_again() 
     off = scene.with_light("key", on=False).with_surface("cube", exponent=3)
     on = off.with_light("key", on=True)
     previous = Previous(scene, illuminate(scene, points))
-    for changed in (off, on, on.with_light("key", position=(0, -3, 1))):
+    moved = on.with_light("key", position=(0, -3, 1))
+    for changed in (off, on, moved, moved.with_surface("sphere", specular=0.9)):
         picture = illuminate(changed, points, previous)
         assert same(picture, illuminate(changed, points))
         previous = Previous(changed, picture)

@@ -123,6 +123,7 @@ def test_a_picture_from_its_own_rasters_is_the_same_picture(scene: Scene) -> Non
 def test_a_picture_from_its_rasters_has_the_scalar() -> None:
     picture = render(wall_scene(sphere(), scalar={"name": "z"}), (13, 9))
     assert picture.scalar is not None
+    assert np.isnan(picture.scalar[picture.surface_number == 0]).all()
     again = Picture.from_rasters(
         picture.intensity,
         picture.surface_number,
