@@ -65,10 +65,9 @@ def light_explained(
     if links.depend_on_parts:
         controls["parts"] = float(bool(links.lit_parts([at.part_name])))
         reaches *= controls["parts"]
-    model = at.reflectance.model
+    factor = specular_factor(at.reflectance.model, rays)
     # Adding 0 makes 0 of -0.
-    diffuse, specular = reaches * light_at(ready, rays, model)[:, 0] + 0.0
-    is_facing = rays.incidence[0] > 0
+    diffuse, specular = reaches * light_at(ready, rays, factor)[:, 0] + 0.0
     return LightExplained(
         light=number,
         name=light.name,
@@ -77,7 +76,7 @@ def light_explained(
         cos_eye=float(rays.eye[0]),
         cos_light=None if rays.light is None else float(rays.light[0]),
         controls=tuple(controls.items()),
-        specular_factor=float(specular_factor(model, rays)[0]) if is_facing else 0.0,
+        specular_factor=float(factor[0]) if rays.incidence[0] > 0 else 0.0,
         diffuse=float(diffuse) * at.reflectance.diffuse,
         specular=float(specular) * at.reflectance.specular,
     )

@@ -23,26 +23,21 @@ FARTHEST: Final = 1e15
 
 The rays of such a light are parallel, and float32 can hold the square of the distance."""
 
-LEAST_WIDTH: Final = 1e-20
-"""The least edge width, in units: far below the rounding of points, and float32 holds any quotient by it."""
-
-LEAST_REACH: Final = 1e-20
-"""The least reach, in units: float32 can hold any distance as a multiple of it."""
+LEAST_LENGTH: Final = 1e-20
+"""The least edge width and reach, in units: far below the rounding of points, and float32 holds any quotient
+by it."""
 
 
 def soften(fraction: RealArray[Any]) -> RealArray[Any]:
-    """The share of the light at a fraction t of the width of a soft edge, in place.
+    """The share of the light at a fraction t of the width of a soft edge.
 
     It is 0 up to t = 0, 1 from t = 1 on, and t^2 (3 - 2 t) between. Assumed: this is the polynomial of the
     lowest degree that begins and ends with a slope of 0, so that neither end shows as a seam. Fractions must
     be finite.
     """
-    np.clip(fraction, 0, 1, out=fraction)
-    rest = np.multiply(fraction, -2)
-    rest += 3
-    rest *= fraction
-    fraction *= rest
-    return fraction
+    t: RealArray[Any] = np.clip(fraction, 0, 1)
+    share: RealArray[Any] = t * ((3 - 2 * t) * t)
+    return share
 
 
 def soft_cone_share(cos_light: RealArray[Any], inner_angle: float, cone_angle: float) -> RealArray[Any]:
@@ -56,36 +51,25 @@ def soft_cone_share(cos_light: RealArray[Any], inner_angle: float, cone_angle: f
     # Rounded like the cosines that it is subtracted from.
     rim = kind(math.cos(math.radians(cone_angle)))
     width = max(math.cos(math.radians(inner_angle)) - float(rim), float(np.finfo(kind).eps))
-    fraction = np.subtract(cos_light, rim)
-    fraction *= kind(1 / width)
-    return soften(fraction)
+    return soften((cos_light - rim) * kind(1 / width))
 
 
-class Falloff(NamedTuple):
-    """Falloff: (1 - f)^n at the distance f as a fraction of the reach, n = 1 or 2, and 0 beyond it.
+def falloff_share(light: Light, reach: float, length: RealArray[Any]) -> RealArray[Any]:
+    """(1 - f)^n at the distance f as a fraction of the reach, n = 1 or 2, and 0 beyond it.
 
     Departs: the light of the paper does not depend on the distance, nor does a light without a falloff here.
     Rejected: 1/d^2, which has no upper limit. A point close to the light would take the whole range of levels
     and leave all others black. This falloff stays within 0 to 1, and ends.
     """
-
-    reach: float
-    exponent: int
-
-    def share(self, length: RealArray[Any]) -> RealArray[Any]:
-        """All of the light at the light itself, nothing at its reach, for the lengths of some rays."""
-        left: RealArray[Any] = np.divide(length, length.dtype.type(-self.reach))
-        left += 1
-        np.maximum(left, 0, out=left)
-        return left if self.exponent == 1 else left * left
+    left: RealArray[Any] = np.maximum(1 - length / length.dtype.type(reach), 0)
+    return left if light.falloff == "linear" else left * left
 
 
-def falloff_of(light: Light, points: VisiblePoints) -> Falloff | None:
-    """The falloff of a light in the unit of some points, if it has any."""
+def reach_of(light: Light, points: VisiblePoints) -> float | None:
+    """The reach of a light with a falloff, in the unit of some points; None without."""
     if light.falloff == "none" or light.reach is None:
         return None
-    reach = min(max(light.reach / points.unit, LEAST_REACH), FARTHEST)
-    return Falloff(reach, 1 if light.falloff == "linear" else 2)
+    return min(max(light.reach / points.unit, LEAST_LENGTH), FARTHEST)
 
 
 # Flaps and half-spaces.
@@ -95,6 +79,12 @@ Axis = Literal["x", "y", "z"]
 
 FlapEnd = Literal["minimum", "maximum"]
 """The fields of a flap that are coordinates."""
+
+
+class Plane(NamedTuple):
+    """The plane of a half-space, by its name."""
+
+    half_space: str
 
 
 class LitSide(NamedTuple):
@@ -117,10 +107,8 @@ def edge_share(side: LitSide, points: RealArray[Any]) -> RealArray[Any]:
     """The share that an edge leaves at some points, (3, k): none on its plane, all from its width on."""
     if side.edge_width == 0:
         return is_inside(side, points).astype(points.dtype)
-    row = (side.row / max(side.edge_width, LEAST_WIDTH)).astype(points.dtype)
-    fraction = row[:3] @ points
-    fraction += row[3]
-    return soften(fraction)
+    row = (side.row / max(side.edge_width, LEAST_LENGTH)).astype(points.dtype)
+    return soften(row[:3] @ points + row[3])
 
 
 def is_inside(side: LitSide, points: RealArray[Any]) -> Booleans:
@@ -130,43 +118,33 @@ def is_inside(side: LitSide, points: RealArray[Any]) -> Booleans:
     return inside
 
 
-def sides_of(light: Light, points: VisiblePoints) -> list[LitSide]:
-    """The sides of the flaps and the half-spaces of a light that are on."""
-    return [*flap_sides(light, points).values(), *half_space_sides(light, points).values()]
-
-
 def flaps_of(light: Light) -> dict[Axis, Flap | None]:
     """The flap of a light along each axis, on or off; None where there is none."""
     return {"x": light.flaps.x, "y": light.flaps.y, "z": light.flaps.z}
 
 
-def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], LitSide]:
-    """The sides of the flaps that are on, without ends at infinity."""
-    sides: dict[tuple[Axis, FlapEnd], LitSide] = {}
-    for row, (axis, flap) in enumerate(flaps_of(light).items()):
+def sides_of(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd] | Plane, LitSide]:
+    """The sides of the flaps and the half-spaces of a light that are on, without ends at infinity.
+
+    A carried half-space is placed with its light.
+    """
+    sides: dict[tuple[Axis, FlapEnd] | Plane, LitSide] = {}
+    for number, (axis, flap) in enumerate(flaps_of(light).items()):
         if flap is None or not flap.on:
             continue
-        ends: dict[FlapEnd, tuple[float, float]] = {
-            "minimum": (1.0, flap.minimum),
-            "maximum": (-1.0, flap.maximum),
-        }
-        for end, (sign, limit) in ends.items():
+        ends: dict[FlapEnd, float] = {"minimum": flap.minimum, "maximum": flap.maximum}
+        for end, limit in ends.items():
             if math.isfinite(limit):
-                x, y, z = (sign if number == row else 0.0 for number in range(3))
+                sign = 1.0 if end == "minimum" else -1.0
+                x, y, z = (sign if row == number else 0.0 for row in range(3))
                 sides[axis, end] = side_of(points, f"flap {axis}", (x, y, z), sign * limit, flap.edge_width)
-    return sides
-
-
-def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, LitSide]:
-    """The sides of the half-spaces that are on, by name; a carried half-space is placed with its light."""
-    sides: dict[str, LitSide] = {}
     for half_space in light.half_spaces:
         if half_space.on:
             placed = detached(half_space, light)
             direction = unit_vector(placed.direction)
             least = sum(a * b for a, b in zip(direction, placed.point, strict=True))
             name = f"half-space {half_space.name}"
-            sides[half_space.name] = side_of(points, name, direction, least, half_space.edge_width)
+            sides[Plane(half_space.name)] = side_of(points, name, direction, least, half_space.edge_width)
     return sides
 
 

@@ -7,7 +7,6 @@ budget. The planes of further lights are computed in turns, in the same array, a
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping, Set
 from typing import Final, NamedTuple
 
@@ -16,7 +15,6 @@ import numpy as np
 from autocolor.arrays import Singles, underflowing
 from autocolor.budget import allowed_memory
 from autocolor.immutable import read_only
-from autocolor.lighting.light import CameraLight
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import camera_light
 from autocolor.lighting.shading import LightPlanes, SurfaceWeights, light_mix, mix, shade
@@ -41,13 +39,10 @@ class Previous(NamedTuple):
 
 
 @underflowing
-def illuminate(
-    scene: Scene, points: VisiblePoints, previous: Previous | None = None, with_controls: bool = True
-) -> Picture:
+def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = None) -> Picture:
     """The picture of the visible points in the light of a scene.
 
-    Without controls, each light shines in all directions, at all distances and on all parts. Such a picture
-    cannot be a previous one. Raises InputError for intensities that float32 can't hold.
+    Raises InputError for intensities that float32 can't hold.
     """
     models = {
         surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.model
@@ -63,16 +58,11 @@ def illuminate(
     shared = np.empty((2, len(points.pixels)), np.float32) if in_turns else None
     updates = {
         name: _plane_update(
-            lights[name],
-            reusable.get(name),
-            changed,
-            surface_weights,
-            points,
-            with_controls,
-            shared if name in in_turns else None,
+            reusable.get(name), changed, of_light, len(points.pixels), shared if name in in_turns else None
         )
-        for name, surface_weights in weights.lights.items()
+        for name, of_light in weights.lights.items()
     }
+    cameras = {name: camera_light(lights[name], points) for name in updates if updates[name][1]}
 
     # Finish a chunk before the next, so that its rows and planes are fetched from memory only once.
     relative = np.empty(len(points.pixels), np.float32)
@@ -81,19 +71,19 @@ def illuminate(
         sums[:] = weights.ambient
         scratch = np.empty_like(sums)
         numbers = {surface.surface_number for surface in chunk.slices}
-        for update in updates.values():
-            if update.light is not None and not numbers.isdisjoint(update.changed_surfaces):
-                shade(update.planes.values, update.light, points, chunk, models)
-            mixed = scratch if update.planes.mixed is None else update.planes.mixed[chunk.pixels]
-            if update.to_mix:
-                mix(update.planes, chunk, out=mixed)
+        for name, (planes, surfaces, to_mix) in updates.items():
+            if not numbers.isdisjoint(surfaces):
+                shade(planes.values, cameras[name], points, chunk, models)
+            mixed = scratch if planes.mixed is None else planes.mixed[chunk.pixels]
+            if to_mix:
+                mix(planes, chunk, out=mixed)
             sums += mixed
 
     # A light that does not shine keeps its planes as long as no model changes.
     valid = {} if changed else reusable
-    valid |= {name: update.planes for name, update in updates.items() if name not in in_turns}
-    planes = {light.name: valid[light.name] for light in scene.lights if light.name in valid}
-    for each in planes.values():
+    valid |= {name: planes for name, (planes, _, _) in updates.items() if name not in in_turns}
+    light_planes = {light.name: valid[light.name] for light in scene.lights if light.name in valid}
+    for each in light_planes.values():
         read_only(each.values)
         if each.mixed is not None:
             read_only(each.mixed)
@@ -106,7 +96,7 @@ def illuminate(
         points.slices,
         relative,
         weights.scale,
-        planes,
+        light_planes,
         visible_parts=points.parts,
     )
 
@@ -132,43 +122,21 @@ def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> 
     }
 
 
-class _PlaneUpdate(NamedTuple):
-    """The planes of a light that shines, and the computations that they need.
-
-    If `light` is given, the values of the planes are computed on the surfaces `changed_surfaces`. If
-    `to_mix`, the weighted sum of both planes is computed everywhere.
-    """
-
-    planes: LightPlanes
-    light: CameraLight | None
-    changed_surfaces: Set[int]
-    to_mix: bool
-
-
 def _plane_update(
-    light: Light,
-    old: LightPlanes | None,
-    changed: Set[int],
-    weights: SurfaceWeights,
-    points: VisiblePoints,
-    with_controls: bool,
-    shared: Singles | None,
-) -> _PlaneUpdate:
-    """The update of a light that shines, given its reusable planes and the changed surfaces.
+    old: LightPlanes | None, changed: Set[int], weights: SurfaceWeights, count: int, shared: Singles | None
+) -> tuple[LightPlanes, Set[int], bool]:
+    """The planes of a light that shines on `count` points, given its reusable planes and changed surfaces.
 
-    New planes are computed in the array `shared`, (2, n), if it is given, else in an array of their own.
+    Also the surfaces on which to compute them, and whether to mix them. New planes are in the array `shared`,
+    (2, count), if it is given, else in an array of their own.
     """
     if old is None:
-        values = np.empty((2, len(points.pixels)), np.float32) if shared is None else shared
-        ready = camera_light(light, points, with_controls)
-        return _PlaneUpdate(LightPlanes(values, weights), ready, weights.keys(), to_mix=True)
-    if not changed:
-        if old.weights != weights:
-            return _PlaneUpdate(LightPlanes(old.values, weights), None, changed, to_mix=True)
-        if old.mixed is not None:
-            return _PlaneUpdate(old, None, changed, to_mix=False)
-        # This light stays while another light is edited: keep its mix for further edits.
-        planes = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
-        return _PlaneUpdate(planes, None, changed, to_mix=True)
-    planes = LightPlanes(old.values.copy(), weights)
-    return _PlaneUpdate(planes, camera_light(light, points, with_controls), changed, to_mix=True)
+        values = np.empty((2, count), np.float32) if shared is None else shared
+        return LightPlanes(values, weights), weights.keys(), True
+    if changed:
+        return LightPlanes(old.values.copy(), weights), changed, True
+    if old.weights != weights:
+        return LightPlanes(old.values, weights), changed, True
+    # This light stays while another light is edited: keep its mix for further edits.
+    mixed = np.empty(count, np.float32) if old.mixed is None else old.mixed
+    return LightPlanes(old.values, weights, mixed), changed, old.mixed is None

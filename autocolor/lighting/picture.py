@@ -172,7 +172,10 @@ class Picture(Immutable):
     @cached_property
     def relative_ranges(self) -> Mapping[int, IntensityRange]:
         """Minimum and maximum of `relative` by surface number; number 0 is the whole picture."""
-        ranges = {surface.surface_number: _range(self.relative[surface.pixels]) for surface in self.slices}
+        ranges = {}
+        for surface in self.slices:
+            values = self.relative[surface.pixels]
+            ranges[surface.surface_number] = IntensityRange(float(values.min()), float(values.max()))
         least = min((each.minimum for each in ranges.values()), default=0.0)
         most = max((each.maximum for each in ranges.values()), default=0.0)
         return {0: IntensityRange(least, most), **ranges}
@@ -250,7 +253,3 @@ def check_surfaces(scene: Scene, picture: Picture) -> None:
             f"the surfaces of a picture must be those of the scene, {shown(names)}, not"
             f" {shown(list(picture.surfaces))}; render this scene, or use the scene that was rendered"
         )
-
-
-def _range(values: Singles) -> IntensityRange:
-    return IntensityRange(float(values.min()), float(values.max()))

@@ -1,6 +1,6 @@
 """Where the rounding of float32 could change the light of a point by more than a fortieth of a level.
 
-A steep factor multiplies the rounding of its cosine: a narrow beam, a narrow cone, a sharp highlight.
+A steep factor multiplies the rounding of its cosine: a narrow beam, the edge of a cone, a sharp highlight.
 `shading` computes such points again by the definitions, in float64.
 """
 
@@ -9,19 +9,12 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-import numpy as np
-
 from autocolor.arrays import ROUNDING, Booleans, RealArray
-from autocolor.lighting.light import CameraLight, Rays, least_cosine, specular_factor
-from autocolor.scene.reflection_models import Phong, ReflectionModel, half_length_squared
+from autocolor.lighting.light import CameraLight, Rays, least_cosine
+from autocolor.scene.reflection_models import Phong, ReflectionModel
 
 ERROR: Final = 8.5e-5
 """Assumed: how far rounding may put the share of a light, 0 to 1: a fortieth of a level."""
-
-NARROW: Final = 2.5e-3
-"""Assumed: a cone is narrow if sin^2(A) is below this: up to 2.9 degrees, or less than that from 180.
-
-The rounding of a cosine would move its rim by a ten thousandth of the angle, or more."""
 
 ROUNDING_OF_EYE: Final = 4.7 * ROUNDING
 """Measured: cos(E) is at least so uncertain, because the rounding of a reflected view changes its length."""
@@ -36,18 +29,18 @@ def uncertain_share(light: CameraLight, rays: Rays, rounding: float) -> Booleans
     Each cos(L) is off by at most `rounding`.
     """
     row, cosines = light.row, rays.light
-    if cosines is None or row.at_infinity:
+    if cosines is None:
         return None
-    steep = is_steep(cosines, row.concentration, rounding)
-    found = [] if steep is None else [steep]
+    uncertain = is_steep(cosines, row.concentration, rounding)
     if row.cone_angle is not None:
-        rim, near = least_cosine(row.cone_angle), rounding + ROUNDING
+        least, near = least_cosine(row.cone_angle), rounding + ROUNDING
         inner = row.cone_angle if row.inner_angle is None else row.inner_angle
         end = math.cos(math.radians(inner))
-        # The share of a soft edge changes by at most 3/2 of the change of the fraction.
-        if 1 - rim * rim < NARROW or (end > rim and 1.5 * rounding > ERROR * (end - rim)):
-            found.append((cosines >= rim - near) & (cosines <= max(rim, end) + near))
-    return np.logical_or.reduce(found) if found else None
+        # The share of a soft edge changes by at most 3/2 of the change of the fraction, that of a sharp by 1.
+        if 1.5 * rounding > ERROR * (end - least):
+            at_edge: Booleans = (cosines >= least - near) & (cosines <= max(least, end) + near)
+            uncertain = at_edge if uncertain is None else uncertain | at_edge
+    return uncertain
 
 
 def uncertain_factor(
@@ -55,23 +48,16 @@ def uncertain_factor(
 ) -> Booleans | None:
     """Whether rounding could change the specular factor of a model; None if it cannot at any point.
 
-    The factor of a half vector is computed again for a cos(E) less by its rounding, unless this is too little
-    to count even where it changes N.H most.
+    A change of cos(E) changes the logarithm of N.H by the same over |L + V|^2, and that of the factor by the
+    model's steepness times as much. |L + V| is (N.L + N.V) / (N.H), so at least N.L + N.V.
     """
     rounding = max(rounding, ROUNDING_OF_EYE)
     if isinstance(model, Phong):
         return is_steep(rays.eye, model.exponent, rounding)
-    places = np.flatnonzero(factor > ERROR)
-    if not len(places):
-        return None
-    changed = np.zeros(len(factor), np.bool_)
-    rays, factor, rounding = rays.at(places), factor.take(places), rounding + ROUNDING_OF_HALF
-    most = rounding / float(half_length_squared(rays.incidence, rays.eye, rays.view).min())
-    if model.steepness * most * max(float(factor.max()), 1.0) <= ERROR:
-        return None
-    moved = rays._replace(eye=rays.eye - np.float32(rounding))
-    changed[places] = np.abs(specular_factor(model, moved) - factor) > ERROR
-    return changed
+    spread = model.steepness * (rounding + ROUNDING_OF_HALF) / ERROR
+    least = rays.incidence + rays.view
+    uncertain: Booleans = factor * spread > least * least
+    return uncertain
 
 
 def is_steep(cosines: RealArray[Any], exponent: float, rounding: float) -> Booleans | None:

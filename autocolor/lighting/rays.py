@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import ROUNDING, Floats, Singles, columns, unit_vector
 from autocolor.checks import Vector
-from autocolor.lighting.controls import FARTHEST, falloff_of, sides_of
+from autocolor.lighting.controls import FARTHEST, reach_of, sides_of
 from autocolor.lighting.light import GRAZING, LEAST_DISTANCE, CameraLight, Rays, rays_to
 from autocolor.scene.lights import Light, middle_between
 from autocolor.scene.scene import Scene
@@ -31,8 +31,8 @@ the last place of 1. The second is multiplied by the square of the lengths that 
 light's and the point's distances from the origin, over the square of the ray."""
 
 
-def camera_light(light: Light, points: VisiblePoints, with_controls: bool = True) -> CameraLight:
-    """A light of the world ready for some visible points, with or without its controls."""
+def camera_light(light: Light, points: VisiblePoints) -> CameraLight:
+    """A light of the world ready for some visible points."""
     axis = None if light.axis is None else points.camera_direction(light.axis)
     if light.at_infinity:
         assert axis is not None
@@ -40,11 +40,11 @@ def camera_light(light: Light, points: VisiblePoints, with_controls: bool = True
     else:
         position = points.camera_point(light.position)
         position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
-    if not with_controls:
-        return CameraLight(light, position, None)
     if light.concentration == 0 and light.cone_angle is None:
         axis = None
-    return CameraLight(light, position, axis, tuple(sides_of(light, points)), falloff_of(light, points))
+    return CameraLight(
+        light, position, axis, tuple(sides_of(light, points).values()), reach_of(light, points)
+    )
 
 
 def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, float]:
@@ -55,16 +55,15 @@ def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, f
     long as a product, and an inverse twice as long.
     """
     position, square = light.position, float(light.position @ light.position)
-    incidence, eye = (
-        _along(position, rows[vector.start : vector.stop + 1]) for vector in (NORMAL, REFLECTED_VIEW)
-    )
+    along = np.array([*position, -1], np.float32)
+    incidence, eye = (along @ rows[vector.start : vector.stop + 1] for vector in (NORMAL, REFLECTED_VIEW))
     if light.row.at_infinity:
         for cosines in (incidence, eye):
             cosines /= np.float32(FARTHEST)
             cosines[np.abs(cosines) <= GRAZING] = 0
         length = np.full(rows.shape[1], FARTHEST, np.float32)
         ahead = None if light.axis is None else np.ones_like(length)
-        return Rays(length, incidence, eye, ahead, rows), ROUNDING * LEAST_ROUNDING
+        return Rays(length, incidence, eye, ahead, rows), 0.0
 
     factors = np.zeros((1 if light.axis is None else 2, 4), np.float32)
     factors[0] = *(-2 * position), 1
@@ -74,10 +73,10 @@ def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, f
     products = factors @ rows[POINT.start : POINT_SQUARED + 1]
     squares, ahead = products[0], None if light.axis is None else products[1]
     squares += np.float32(square)
-    close = CLOSE * max(square, radius**2)
-    places = np.flatnonzero(squares <= close)
-    shortest = math.sqrt(max(float(squares.min()), close, LEAST_DISTANCE**2))
-    length = np.sqrt(np.maximum(squares, np.float32(LEAST_DISTANCE**2), out=squares), out=squares)
+    close, least = CLOSE * max(square, radius**2), float(squares.min())
+    places = np.flatnonzero(squares <= close) if least <= close else np.empty(0, np.intp)
+    squares[places] = 1
+    length = np.sqrt(squares, out=squares)
     incidence /= length
     eye /= length
     if ahead is not None and light.axis is not None:
@@ -86,19 +85,13 @@ def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, f
     rays = Rays(length, incidence, eye, ahead, rows)
     if len(places):
         exact = rays_to(light, columns(rows, places))
-        for array, values in zip(rays[:4], exact[:4], strict=True):
-            if array is not None:
-                array[places] = values
+        length[places], incidence[places], eye[places] = exact.length, exact.incidence, exact.eye
+        if ahead is not None and exact.light is not None:
+            ahead[places] = exact.light
     # The nearest point is at most as far from the origin as the light and the ray together.
-    distance = math.sqrt(square)
+    distance, shortest = math.sqrt(square), math.sqrt(max(least, close, LEAST_DISTANCE**2))
     size = distance + min(radius, distance + shortest)
     return rays, ROUNDING * max(LEAST_ROUNDING, CANCELLATION * (size / shortest) ** 2)
-
-
-def _along(position: Floats, rows: Singles) -> Singles:
-    """The component of each ray along a vector v in three of the rows; the fourth has P.v."""
-    products: Singles = np.array([*position, -1], np.float32) @ rows
-    return products
 
 
 def middle_of(scene: Scene) -> Vector:

@@ -1,30 +1,14 @@
-"""The light equation: the contribution of each light to the intensity at a visible point.
+"""The two planes of a light: what its light is at each visible point, but for D, S and its intensity.
 
-Paper: Figure 2, and "The Lighting Model". The intensity at a point is
-
-    ambient + sum over the lights j of  light(j)
-    light(j) = intensity(j) x controls(j) x (D cos(I) + S cos^N(E))
-
-I is the angle between the normal and the direction to the light, and E the angle between the direction to the
-light and the reflected view. D, S and N are the surface's; a light gives nothing where cos(I) <= 0. The light
-controls leave a share of the light, 0 to 1 (see `controls`). Another reflection model has its own factor in
-the place of cos^N(E) (see `scene.reflection_models`).
-
-The equation is computed as
+Paper: "The Lighting Model". The equation of `light` is computed as
 
     light(j) = (intensity(j) D) x diffuse plane + (intensity(j) S) x specular plane
     diffuse plane = controls(j) cos(I)
     specular plane = controls(j) cos^N(E)
 
 `shade` fills in the two planes of a light, which takes the time. `mix` weighs and adds them; an edit of D, S
-or an intensity needs no more. `illumination` adds up the lights.
-
-Measured and rejected: one surface after another (a tenth longer on the coupe, whose smaller surfaces are
-hardly worth the calls); fewer points at once than 131,072 (a tenth more at a quarter of that); two threads,
-each on half of the points (as long as one: what they compute they must fetch from memory, and between any two
-calls they wait for the interpreter); two processes (two thirds of the time of one, for a second copy of
-everything); the cosines of all lights as one matrix product (a twentieth less, but nothing says that it
-rounds as the product of one light does, and an edit must give the same bits as a fresh picture).
+or an intensity needs no more. `illumination` adds up the lights. docs/PERFORMANCE.md has what was measured
+and rejected.
 """
 
 from __future__ import annotations
@@ -108,8 +92,8 @@ def shade(
     rays, rounding = fast_rays(light, rows, points.radius)
     facing = rays.incidence > 0
     is_lit = facing if is_lit is None else np.logical_and(is_lit, facing, out=is_lit)
-    if light.falloff is not None:
-        is_lit &= rays.length < light.falloff.reach
+    if light.reach is not None:
+        is_lit &= rays.length < light.reach
     if rays.light is not None:
         is_lit &= rays.light >= np.float32(_least_cosine(light.row) - rounding - ROUNDING)
     count = np.count_nonzero(is_lit)
@@ -154,37 +138,44 @@ def _reflect(
 ) -> None:
     """Fill in both planes at some points; 0 where `is_lit` is false.
 
-    The surfaces of the points end at `ends` and have these `models`. Points at which the `rounding` of
-    cosines counts are computed again by the definitions: the specular plane only, where it counts in the
-    model's factor alone.
+    The surfaces of the points end at `ends` and have these `models`. Points at which `rounding` counts
+    are computed again by the definitions: the specular plane only, if it counts in the factor alone.
     """
     share = None if is_lit is None or is_lit.all() else is_lit.astype(np.float32)
     for _, left in shares_of(light, rays):
         share = left if share is None else np.multiply(share, left, out=share)
-    again = uncertain_share(light, rays, rounding)
+    of_share = uncertain_share(light, rays, rounding)
+    again = np.zeros(out.shape[1], np.bool_) if of_share is None else of_share.copy()
     for (start, end), model in zip(pairwise([0, *ends]), models, strict=True):
         if start == end:
             continue
         here = slice(start, end)
-        some, planes = rays.within(here), out[:, here]
+        some, planes = rays.at(here), out[:, here]
         factor = specular_factor(model, some)
         if share is None:
             planes[DIFFUSE], planes[SPECULAR] = some.incidence, factor
         else:
             np.multiply(some.incidence, share[here], out=planes[DIFFUSE])
             np.multiply(factor, share[here], out=planes[SPECULAR])
-        found = [uncertain_factor(model, some, factor, rounding), None if again is None else again[here]]
-        uncertain = [each for each in found if each is not None]
-        if uncertain:
-            wanted = np.logical_or.reduce(uncertain)
-            places = np.flatnonzero(wanted if is_lit is None else wanted & is_lit[here])
-            if len(places):
-                exact = exact_rays_to(light, some.at(places).vectors(slice(None)))
-                computed = light_at(light, exact, model)
-                planes[SPECULAR, places] = computed[SPECULAR]
-                if again is not None:
-                    of_share = again[here][places]
-                    planes[DIFFUSE, places[of_share]] = computed[DIFFUSE, of_share]
+        of_factor = uncertain_factor(model, some, factor, rounding)
+        if of_factor is not None:
+            again[here] |= of_factor
+
+    # Compute the uncertain points again.
+    places = np.flatnonzero(again if is_lit is None else np.logical_and(again, is_lit, out=again))
+    if len(places):
+        exact = exact_rays_to(light, rays.at(places).vectors(slice(None)))
+        bounds = pairwise(np.searchsorted(places, [0, *ends]).tolist())
+        factors = [
+            specular_factor(model, exact.at(slice(start, end)))
+            for (start, end), model in zip(bounds, models, strict=True)
+            if start < end
+        ]
+        computed = light_at(light, exact, np.concatenate(factors))
+        out[SPECULAR, places] = computed[SPECULAR]
+        if of_share is not None:
+            of_share = of_share[places]
+            out[DIFFUSE, places[of_share]] = computed[DIFFUSE, of_share]
 
 
 @underflowing
@@ -224,15 +215,19 @@ def light_mix(
     """
     if not ambient < LARGEST_SINGLE:
         raise InputError(f"ambient must stay below {LARGEST_SINGLE:.3g}, not {ambient:g}; lower it")
-    shining = [light for light in lights if light.shines]
     visible = {number: surfaces[number - 1] for number in models}
-    strengths = {light.name: _strengths(light, visible, parts) for light in shining}
+    strengths = {light.name: _strengths(light, visible, parts) for light in lights if light.shines}
     for number, surface in visible.items():
-        peaks = {
-            name: rows[number][0] + rows[number][1] * models[number].largest
-            for name, rows in strengths.items()
-        }
-        _refuse_overflow(surface.name, peaks, ambient)
+        largest = models[number].largest
+        peaks = {name: rows[number][0] + rows[number][1] * largest for name, rows in strengths.items()}
+        total = ambient + sum(peaks.values())
+        if not total < LARGEST_SINGLE:
+            strongest = max(peaks, key=lambda name: peaks[name])
+            raise InputError(
+                f"surface {surface.name!r} under light {strongest!r}: intensities must stay below"
+                f" {LARGEST_SINGLE:.3g}, not reach {total:g}; lower the light's intensity or the surface's"
+                " diffuse and specular"
+            )
     all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
     scale = max([ambient, *all_strengths]) or 1.0
     weights = {
@@ -253,24 +248,9 @@ def _strengths(
     if links.depend_on_parts:
         lit_parts = links.lit_parts(part.name for part in parts)
         lit &= {part.surface for part in parts if part.name in lit_parts}
-    return {
-        number: (
-            light.intensity * surface.reflectance.diffuse,
-            light.intensity * surface.reflectance.specular,
-        )
-        if surface.name in lit and links.shines_on_surface(surface.name)
-        else (0.0, 0.0)
-        for number, surface in visible.items()
-    }
-
-
-def _refuse_overflow(surface: str, peaks: Mapping[str, float], ambient: float) -> None:
-    """Raise InputError if float32 can't hold the sum of the peaks; it names the light that adds most."""
-    total = ambient + sum(peaks.values())
-    if math.isfinite(total) and total < LARGEST_SINGLE:
-        return
-    light = max(peaks, key=lambda name: peaks[name])
-    raise InputError(
-        f"surface {surface!r} under light {light!r}: intensities must stay below {LARGEST_SINGLE:.3g}, not"
-        f" reach {total:g}; lower the light's intensity or the surface's diffuse and specular"
-    )
+    strengths = {}
+    for number, surface in visible.items():
+        is_lit = surface.name in lit and links.shines_on_surface(surface.name)
+        intensity = light.intensity if is_lit else 0.0
+        strengths[number] = intensity * surface.reflectance.diffuse, intensity * surface.reflectance.specular
+    return strengths

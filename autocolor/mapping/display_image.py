@@ -148,14 +148,7 @@ class LevelImage(DisplayImage):
             and all(getattr(before.scene, name) == getattr(scene, name) for name in MAPPING)
         ):
             return cls(scene, picture, ranges, before.words, block, bands)
-        words = words_of(
-            picture,
-            ranges,
-            mapping=scene.mapping,
-            dither=scene.dither,
-            bands=bands,
-            extents=ranges_of(scene, picture),
-        )
+        words = words_of(picture, ranges, ranges_of(scene, picture), scene.mapping, scene.dither, bands)
         return cls(scene, picture, ranges, in_blocks(words, block), block, bands)
 
     @property

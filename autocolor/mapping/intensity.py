@@ -206,20 +206,18 @@ def held_exposure(
 def words_of(
     picture: Picture,
     ranges: Mapping[str, LevelRange],
-    scaling: str = "surface",
+    extents: Mapping[int, IntensityRange],
     mapping: str | CurvePoints = "linear",
-    exposure: Exposure = AUTO,
     dither: str = "off",
     bands: Mapping[str, Bands] = MappingProxyType({}),
-    extents: Mapping[int, IntensityRange] | None = None,
 ) -> Words:
     """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
 
-    The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
-    lowest and its highest level; intensities beyond the range become the nearer of the two. If no range has
-    an extent, every pixel gets the middle level, which is neither black nor a highlight. On a surface with
-    `bands`, the intensity gives the shade and the scalar the band. `extents` are the ranges that are mapped,
-    if they are known. Raises InputError if an intensity is not finite.
+    The minimum and the maximum of the range that is mapped for a surface, in `extents` from `mapped_ranges`,
+    become its lowest and its highest level; intensities beyond the range become the nearer of the two. If no
+    range has an extent, every pixel gets the middle level, which is neither black nor a highlight. On a
+    surface with `bands`, the intensity gives the shade and the scalar the band. Raises InputError if an
+    intensity is not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     for surface in picture.slices:
@@ -227,7 +225,6 @@ def words_of(
         if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
             name = picture.surfaces[surface.surface_number - 1]
             raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
-    extents = mapped_ranges(picture, scaling, exposure) if extents is None else extents
     fractions_of = fractions_by_surface(picture, extents, mapping)
     thresholds = ordered_thresholds(picture.lines, picture.elements) if dither == "ordered" else None
     for chunk in point_chunks(picture.slices):

@@ -16,7 +16,7 @@ and darker with that as a light moves: for N = 100 the mean error on a ball is u
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final, NamedTuple
@@ -55,6 +55,7 @@ from autocolor.visibility.visible_points import (
     SurfaceSlice,
     VisibleParts,
     VisiblePoints,
+    surface_slices,
 )
 
 
@@ -164,29 +165,25 @@ def words_of_normals(picture: Picture, ranges: Mapping[str, LevelRange]) -> tupl
     """
     assert picture.normals is not None
     raster = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
-    nothing = np.empty((3, 0), np.float32)
-    words, normals, samples, counts = [np.empty(0, np.intp)], [nothing], [nothing], [np.empty(0, np.intp)]
-    slices, sample_slices = [], []
-    start = sample_start = 0
+    words, cells = [np.empty(0, np.intp)], dict[int, Cells]()
     for surface in picture.slices:
         first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
-        cells = cells_of(picture.normals[:, surface.pixels], levels)
-        number, count = surface.surface_number, cells.normals.shape[1]
-        raster[picture.pixels[surface.pixels]] = first + cells.numbers
-        words.append(np.arange(first, first + count))
-        normals.append(cells.normals)
-        samples.append(cells.samples)
-        counts.append(cells.counts)
-        slices.append(SurfaceSlice(number, start, start + count))
-        start += count
-        sample_slices.append(SurfaceSlice(number, sample_start, sample_start + cells.samples.shape[1]))
-        sample_start = sample_slices[-1].stop
+        found = cells[surface.surface_number] = cells_of(picture.normals[:, surface.pixels], levels)
+        raster[picture.pixels[surface.pixels]] = first + found.numbers
+        words.append(np.arange(first, first + found.normals.shape[1]))
+    nothing = cells_of(np.empty((3, 0), np.float32), 1)
+    normals, _, samples, counts = zip(nothing, *cells.values(), strict=True)
+
+    def slices_of(rows: Sequence[Singles]) -> tuple[SurfaceSlice, ...]:
+        sizes = [each.shape[1] for each in rows[1:]]
+        return surface_slices(np.bincount(np.array([*cells], np.intp), sizes, minlength=1).astype(np.int64))
+
     stand_for = WordNormals(
         read_only(np.concatenate(words)),
         read_only(np.concatenate(normals, axis=1)),
-        tuple(slices),
+        slices_of(normals),
         read_only(np.concatenate(samples, axis=1)),
-        tuple(sample_slices),
+        slices_of(samples),
         read_only(np.concatenate(counts)),
     )
     return read_only(raster).reshape(picture.lines, picture.elements), stand_for
@@ -272,22 +269,16 @@ def light_at_normals(
     )
     lights = tuple(far_light(light, middle) for light in scene.lights_in_world)
     far_scene = with_values(scene, {"view": view, "lights": lights})
-    return illuminate(far_scene, points, with_controls=False)
+    return illuminate(far_scene, points)
 
 
 def far_light(light: Light, middle: Vector) -> Light:
-    """A light of the world as a point at a distance of 1 from the origin, in its direction from the middle.
+    """A light of the world as a point source at a distance of 1 from the origin, in its direction.
 
-    Its links to parts are left out. It must be used without its controls.
+    Of its controls, the links to surfaces stay.
     """
-    return with_values(
-        light,
-        {
-            "position": direction_to_light(light, middle),
-            "at_infinity": False,
-            "links": with_values(light.links, {"only_parts": None, "except_parts": None}),
-        },
-    )
+    links = with_values(light.links, {"only_parts": None, "except_parts": None})
+    return Light(light.name, direction_to_light(light, middle), light.intensity, light.on, links=links)
 
 
 # Cells. The visible normals of a surface are divided into few cells, each with one normal that stands for it.

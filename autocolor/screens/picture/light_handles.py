@@ -13,10 +13,9 @@ import numpy as np
 
 from autocolor.arrays import Indices
 from autocolor.checks import Vector
-from autocolor.lighting.controls import flaps_of
+from autocolor.lighting.controls import Plane, flaps_of
 from autocolor.lighting.picking import (
     CONE,
-    Plane,
     Rim,
     cone_placed,
     flap_placed,

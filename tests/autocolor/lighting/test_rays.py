@@ -16,7 +16,7 @@ from autocolor.testing import directions, numbers, outside_views, vectors
 from autocolor.visibility.visible_points import REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.twins.point import dot, minus, times, unit
-from tests.small import cube, sphere, wall, wall_scene
+from tests.small import cube, sphere, wall_scene
 
 BALL = sphere(12, 8)
 
@@ -52,19 +52,7 @@ def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, d
         assert cos_eye[number] == pytest.approx(dot(unit(ray), reflected[number].tolist()), abs=error)
 
 
-@pytest.mark.parametrize("gap", [0.03, 0.01, 1e-3])
-def test_the_rays_to_a_light_close_to_the_wall_are_as_exact(gap: float) -> None:
-    x, z = 0.31, -0.22
-    view = View((x, -4.0, z), target=(x, 0.0, z), field_of_view=math.degrees(gap))
-    points = visible_surfaces(wall(), view, (1,), 30, 40)
-    rays = rays_of(Light("light", (x, -gap, z)), points)
-    cos_incidence = rays.incidence
-    for number, point in enumerate(points.world_points.tolist()):
-        aside = math.hypot(point[0] - x, point[2] - z)
-        assert cos_incidence[number] == pytest.approx(gap / math.hypot(aside, gap), abs=3e-4)
-
-
-@given(numbers(1.05, 3.0) | numbers(3.0, 1000.0), directions(), outside_views())
+@given(st.sampled_from([1.02, 1.05, 1.1, 1.2, 2.0, 30.0, 1e3]), directions(), outside_views())
 def test_cosines_near_1_are_off_by_at_most_the_rounding(distance: float, side: Vector, view: View) -> None:
     points = visible_surfaces(BALL, view, (1,), 30, 40)
     light = Light("light", times(distance, unit(side)), aim=(0.1, 0.0, 0.05), concentration=1)

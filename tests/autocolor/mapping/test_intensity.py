@@ -11,8 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Light, Picture, Scene, render
+from autocolor.arrays import Words
 from autocolor.images import display_image
 from autocolor.lighting.picture import IntensityRange
+from autocolor.mapping import intensity as mapping_module
 from autocolor.mapping.intensity import (
     dithered_levels,
     following_ranges,
@@ -24,7 +26,6 @@ from autocolor.mapping.intensity import (
     mapped_ranges,
     ordered_thresholds,
     stage_surfaces,
-    words_of,
 )
 from autocolor.mapping.ranges import level_ranges
 from autocolor.testing import MAPPINGS, scenes
@@ -46,6 +47,18 @@ def picture_of(*intensities: list[float]) -> Picture:
     )
     names = tuple("abcdef"[: len(intensities)])
     return Picture(1, len(flat) + 2, names, np.arange(1, len(flat) + 1), slices, flat, 1.0)
+
+
+def words_of(
+    picture: Picture,
+    ranges: Any,
+    scaling: str = "surface",
+    mapping: Any = "linear",
+    exposure: Any = "auto",
+    dither: str = "off",
+) -> Words:
+    extents = mapped_ranges(picture, scaling, exposure)
+    return mapping_module.words_of(picture, ranges, extents, mapping, dither)
 
 
 def test_an_exposure_holds_the_ranges_that_the_scaling_maps() -> None:

@@ -16,14 +16,12 @@ from autocolor.mapping.normal_words import (
     BINS,
     NormalImage,
     cells_of,
-    far_light,
     light_at_normals,
     normal_light,
     spread_of,
     words_at_levels,
     words_of_normals,
 )
-from autocolor.scene.columns import fields_of
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.testing import scenes
 from autocolor.visibility.visible_points import SurfaceSlice
@@ -389,12 +387,3 @@ def test_a_far_light_is_like_one_in_its_direction(light: Light, like: Light) -> 
     assert intensities(far_ball(light), *SIDES) == pytest.approx(
         intensities(far_ball(like), *SIDES), rel=1e-6
     )
-
-
-def test_a_far_light_keeps_every_column_but_those_of_its_place_and_its_links_to_parts() -> None:
-    light = Light("sun", (4, -3, 2), on=False, aim=(9, 9, 9), at_infinity=True)
-    light = light.replace(only_parts=("sphere",), except_surfaces=("shell",))
-    far = far_light(light, (0, 0, 0))
-    differing = {name for name in fields_of(Light) if vars(far)[name] != vars(light)[name]}
-    assert differing == {"position", "at_infinity", "links"}
-    assert far.links == dataclasses.replace(light.links, only_parts=None)

@@ -462,7 +462,8 @@ def test_a_rig_fitted_to_another_object_scales_places_and_lengths_and_keeps_the_
     assert without_numbers(before) == without_numbers(after)
 
 
-NOT_FAR_AWAY = {"position", "at_infinity", "only_parts", "except_parts"}
+NOT_FAR_AWAY = {"position", "at_infinity", "only_parts", "except_parts", "direction", "aim", "concentration"}
+NOT_FAR_AWAY |= {"cone_angle", "inner_angle", "flaps", "half_spaces", "falloff", "reach"}
 """The columns that a far light has in another way, or not at all: they depend on the place of a point."""
 
 
