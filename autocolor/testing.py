@@ -513,7 +513,7 @@ def check_entries_outside_range_stay(
     names = [surfaces] if isinstance(surfaces, str) else list(surfaces)
     scene = subject if isinstance(subject, Scene) else subject.scene
     for name in names:
-        scene.surface(name)
+        scene.surfaces[name]
     before, after = _states(subject, edit, picture)
     is_inside = np.zeros(len(before.entries), np.bool_)
     spans = []

@@ -368,7 +368,7 @@ assert difference.max() <= 1
 # highest level. Here is the range of the body by hand. It is equal to the table of the display.
 
 # %%
-paint = paper.surface("body").paint
+paint = paper.surfaces["body"].paint
 level = np.arange(levels)
 blend_level = np.floor(paint.blend * (levels - 1) + 0.5)
 share = np.clip((level - blend_level) / (levels - 1 - blend_level), 0, 1)

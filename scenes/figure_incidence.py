@@ -33,7 +33,7 @@ BRIGHTEST: Final = 1.05
 def lit_coupe() -> autocolor.Scene:
     """The coupe in dimmed studio lights, with a lamp at the eye, exposed alike in all panels."""
     coupe = read_scene("coupe")
-    dimmed = [coupe.light(name).replace(intensity=0.6) for name in ("key", "side")]
+    dimmed = [coupe.lights[name].replace(intensity=0.6) for name in ("key", "side")]
     lamp = autocolor.Light("lamp", coupe.view.eye, 0.6, aim=(0.0, 0.0, 0.6), concentration=4)
     coupe = coupe.replace(lights=[*dimmed, lamp], scaling="object", mapping=CURVE)
     for name, changes in SURFACES.items():

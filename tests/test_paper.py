@@ -115,7 +115,7 @@ def test_the_tables_are_a_relational_data_base_that_can_be_asked_and_changed(tmp
         )
         assert row == {"polygons": 6}
         tables.update("lights", "lamp", intensity=2.5)
-    assert autocolor.read_scene(tmp_path / "boxes.sqlite").light("lamp").intensity == 2.5
+    assert autocolor.read_scene(tmp_path / "boxes.sqlite").lights["lamp"].intensity == 2.5
 
 
 def test_tables_that_are_missing_are_created_and_give_the_same_picture_when_saved(tmp_path: Path) -> None:
@@ -308,7 +308,7 @@ def test_aiming_takes_the_bright_spot_off_the_plane() -> None:
     """Figure 4, A and B."""
     scene = autocolor.read_scene(COUPE.parent / "pyramid")
     point = autocolor.render(scene, SIZE)
-    aimed = scene.light("lamp").replace(aim=(0.5, 0.0, 0.9), concentration=1)
+    aimed = scene.lights["lamp"].replace(aim=(0.5, 0.0, 0.9), concentration=1)
     flood = autocolor.render(scene.replace(lights=[aimed]), SIZE)
     assert flood.ranges.surfaces["plane"].maximum < 0.6 * point.ranges.surfaces["plane"].maximum
 
@@ -481,14 +481,14 @@ def test_a_light_is_moved_in_two_views_without_typing_coordinates(
     """Figure 5: the top view changes x and y, the front view z."""
     at_work = hand(two_boxes())
     at_work.turn_to("light & view")
-    x, y, z = at_work.viewer.studio.scene.light("lamp").position
+    x, y, z = at_work.viewer.studio.scene.lights["lamp"].position
     element, line = place_of_lamp(at_work, "top")
     at_work.drag((element, line), (element + 12, line + 9))
-    moved = at_work.viewer.studio.scene.light("lamp").position
+    moved = at_work.viewer.studio.scene.lights["lamp"].position
     assert (moved[0] != x, moved[1] != y, moved[2] == z) == (True, True, True)
     element, line = place_of_lamp(at_work, "front")
     at_work.drag((element, line), (element, line + 9))
-    lowered = at_work.viewer.studio.scene.light("lamp").position
+    lowered = at_work.viewer.studio.scene.lights["lamp"].position
     assert (lowered[1] == moved[1], lowered[2] < z) == (True, True)
 
 

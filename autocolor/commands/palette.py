@@ -49,7 +49,7 @@ def palette(source: SceneSource, surface: str, output: str | None, force: bool) 
     start, code = start_of(source)
     scene = scene_in(start)
     # A wrong name is refused before the picture is rendered.
-    scene.surface(surface)
+    scene.surfaces[surface]
     picture = start.picture if isinstance(start, tuple) else source.rendered(scene)
     write_palette(output, display_image(scene, picture).entries_of(surface), overwrite=force)
     tell_written(output)

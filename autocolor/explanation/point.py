@@ -59,7 +59,7 @@ def point_explained(scene: Scene, seen: Seen) -> PointExplained:
         )
         for node, normal in corner_rows(mesh, seen.polygon)
     ]
-    surface = scene.surface(seen.surface)
+    surface = scene.surfaces[seen.surface]
     along = (sum(map(float.__mul__, corner.normal, seen.normal)) for corner in corners)
     return PointExplained(
         polygon=seen.polygon + 1,

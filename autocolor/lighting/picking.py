@@ -55,9 +55,9 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
     light or surface.
     """
     scene, points = sight.scene, sight.points
-    row = scene.light_in_world(light)
+    row = scene.lights_in_world[light]
     camera = camera_light(row, points)
-    number = None if surface is None else scene.surfaces.index(scene.surface(surface)) + 1
+    number = None if surface is None else scene.surfaces.index(scene.surfaces[surface]) + 1
     most, found = 0.0, None
     for each in (each for each in points.slices if number in (None, each.surface_number)):
         for chunk in chunks(each.stop, PIXELS_AT_ONCE, each.start):
@@ -152,7 +152,7 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     highlight there.
     """
     seen = _on_surface(seen, "a highlight")
-    row = scene.light_in_world(light)
+    row = scene.lights_in_world[light]
     point, normal, reflected = (np.array(each) for each in (seen.point, seen.normal, seen.reflected_view))
     if scene.words == NORMALS:
         point = np.array(middle_of(scene))
@@ -193,7 +193,7 @@ def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
     places[points.pixels] = np.arange(len(points.pixels))
     return {
         rim: sight.pixels_of(_rim(points, inside, places))
-        for rim, inside in _inside(points, sight.scene.light_in_world(light))
+        for rim, inside in _inside(points, sight.scene.lights_in_world[light])
     }
 
 
@@ -248,7 +248,7 @@ def cone_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     cone angle. Raises UsageError on the background.
     """
     seen = _on_surface(seen, "a cone")
-    row = scene.light_in_world(light)
+    row = scene.lights_in_world[light]
     assert row.axis is not None
     toward = np.subtract(seen.point, row.position)
     # The arc tangent is exact at all angles, which the arc cosine is not.
@@ -265,7 +265,7 @@ def flap_placed(scene: Scene, seen: Seen | None, light: str, axis: Axis, end: Fl
     Raises UsageError on the background.
     """
     seen = _on_surface(seen, "a flap")
-    row = scene.light(light)
+    row = scene.lights[light]
     flap = flaps_of(row)[axis]
     assert flap is not None
     coordinate = seen.point["xyz".index(axis)]
@@ -283,7 +283,7 @@ def half_space_placed(scene: Scene, seen: Seen | None, light: str, name: str) ->
     background.
     """
     seen = _on_surface(seen, "a half-space")
-    row = scene.light_in_world(light)
+    row = scene.lights_in_world[light]
     half_space = next(each for each in row.half_spaces if each.name == name)
     point = seen.point
     if half_space.carried:

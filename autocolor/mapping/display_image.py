@@ -71,7 +71,7 @@ class DisplayImage(ABC):
     def range_of(self, name: str) -> LevelRange:
         """The range of a surface. Raises UsageError for an unknown surface, and for a surface of no part."""
         if name not in self.ranges:
-            surface = self.scene.surface(name)
+            surface = self.scene.surfaces[name]
             raise UsageError(
                 f"surface {surface.name!r} has no levels, because no part has it{nearest(name, self.ranges)}"
             )
@@ -164,7 +164,7 @@ class LevelImage(DisplayImage):
             ends = scalar.below if bands.has_below else None, scalar.above if bands.has_above else None
             floor = self.floor_of(name) if self.scene.contrast == "floor" else DARKEST
             return band_entries(scalar.scale, ends, scalar.missing, bands, floor)
-        return entries_of(self.scene.surface(name).paint, levels, self.floor_of(name))
+        return entries_of(self.scene.surfaces[name].paint, levels, self.floor_of(name))
 
     def words_at_levels(self, name: str) -> Words:
         """The words of the surface's range, (levels,) uint16."""

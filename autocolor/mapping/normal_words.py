@@ -112,7 +112,7 @@ class NormalImage(DisplayImage):
         Words that stand for no normal have the color of their level.
         """
         levels, floor = self.range_of(name).levels, self.floor_of(name)
-        paint = self.scene.surface(name).paint
+        paint = self.scene.surfaces[name].paint
         entries = entries_of(paint, levels, floor)
         if name not in self._fractions:
             return entries

@@ -260,18 +260,10 @@ class Scene(Row):
         """Whether all columns are equal. Meshes are compared by identity."""
         return cost_of_edit(other, self) is None
 
-    def light(self, name: str) -> Light:
-        """The light of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.lights[name]
-
     @property
     def lights_in_world(self) -> TableRows[Light]:
         """The lights in object coordinates, whatever they follow."""
         return TableRows(lights_in_world(self.lights, self.view))
-
-    def light_in_world(self, name: str) -> Light:
-        """The light of that name in object coordinates. Raises UsageError if it does not exist."""
-        return self.lights_in_world[name]
 
     def with_light_in_world(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of a light changed; positions and directions are in object coordinates.
@@ -285,7 +277,7 @@ class Scene(Row):
         frame = self._frame_of(name)
         if frame is None:
             return self.with_light(name, **changes)
-        moved: dict[str, Any] = frame.from_world(self.light_in_world(name).replace(**changes))
+        moved: dict[str, Any] = frame.from_world(self.lights_in_world[name].replace(**changes))
         return self.with_light(name, **{**changes, **{each: moved[each] for each in moved.keys() & changes}})
 
     def with_light_following(self, name: str, follows: str | None) -> Scene:
@@ -293,21 +285,13 @@ class Scene(Row):
 
         Raises UsageError if no light has that name, InputError if the light cannot follow `follows`.
         """
-        world = vars(self.light_in_world(name))
+        world = vars(self.lights_in_world[name])
         followed = self.with_light(name, follows=follows)
         return followed.with_light_in_world(name, **{each: world[each] for each in vector_columns(Light)})
 
     def _frame_of(self, name: str) -> Frame | None:
         world = {light.name: light for light in self.lights_in_world}
-        return frame_of(self.light(name), world, self.view)
-
-    def surface(self, name: str) -> Surface:
-        """The surface of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.surfaces[name]
-
-    def part(self, name: str) -> Part:
-        """The part of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.parts[name]
+        return frame_of(self.lights[name], world, self.view)
 
     def with_light(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of a light changed."""
@@ -344,10 +328,6 @@ class Scene(Row):
         """The scene with some fields of the view changed."""
         return with_values(self, {"view": self.view.replace(**changes)})
 
-    def named_view(self, name: str) -> NamedView:
-        """The named view of that name. Raises UsageError, with the closest name, if it does not exist."""
-        return self.views[name]
-
     def with_named_view(self, name: str, /, **changes: Unpack[NamedViewChanges]) -> Scene:
         """The scene with some fields of a named view changed; the view itself stays."""
         return self._with_row("views", place_named(self.views, name), changes)
@@ -364,7 +344,7 @@ class Scene(Row):
 
     def with_taken_view(self, name: str) -> Scene:
         """The scene with a named view as its view. Raises UsageError if the named view does not exist."""
-        return with_values(self, {"view": self.named_view(name).view})
+        return with_values(self, {"view": self.views[name].view})
 
     def without_named_view(self, name: str) -> Scene:
         """The scene without a named view. Raises UsageError if the named view does not exist."""
@@ -405,7 +385,7 @@ class Scene(Row):
 
         Raises UsageError if the light does not exist, InputError if the new name is taken.
         """
-        light = self.light(name)
+        light = self.lights[name]
         if new_name is None:
             new_name = self._free_light_name(name)
         return replaced(self, {"lights": (*self.lights, light.replace(name=new_name))})
@@ -421,14 +401,14 @@ class Scene(Row):
         `new_name` its name is like "key mirrored". Raises UsageError for an unknown light or axis, InputError
         if the new name is taken.
         """
-        light, number = self.light_in_world(name), axis_number(axis)
+        light, number = self.lights_in_world[name], axis_number(axis)
         if about is None:
             low, high = self.object_bounds
             about = (low[number] + high[number]) / 2
         if new_name is None:
             new_name = self._free_light_name(f"{name} mirrored")
         copy = mirrored(light, new_name, axis, about)
-        copy = in_frame(copy, self._frame_of(name), self.light(name).follows)
+        copy = in_frame(copy, self._frame_of(name), self.lights[name].follows)
         return replaced(self, {"lights": (*self.lights, copy)})
 
     def with_all_lights_on(self) -> Scene:
@@ -460,7 +440,7 @@ class Scene(Row):
 
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
-        wanted = [self.light(name).name for name in names]
+        wanted = [self.lights[name].name for name in names]
         return self.replace(lights=tuple(light.replace(on=light.name in wanted) for light in self.lights))
 
     def _with_row(self, table: str, place: int, changes: Mapping[str, Any]) -> Scene:

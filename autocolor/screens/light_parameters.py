@@ -88,7 +88,7 @@ def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
     for chosen, other in EXCLUDING:
         if changes.get(chosen) is not None:
             changes = {other: None, **changes}
-    inner = session.scene.light(name).inner_angle
+    inner = session.scene.lights[name].inner_angle
     if "cone_angle" in changes and inner is not None:
         outer = changes["cone_angle"]
         changes = {"inner_angle": None if outer is None else min(inner, outer), **changes}
@@ -104,7 +104,7 @@ def choose_kind(session: Session, light: Light, kind: str) -> None:
         put_light(session, light.name, {name: _default(name) for name in AXIS_COLUMNS})
         return
     scene = session.scene
-    light = scene.light_in_world(light.name)
+    light = scene.lights_in_world[light.name]
     if kind == AIM:
         scene = scene.with_light_in_world(
             light.name, aim=aim_of(light, session.world.low, session.world.high)

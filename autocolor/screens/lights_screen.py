@@ -447,7 +447,7 @@ class PlanePicking:
         session, scene = self.session, self.session.scene
         if not session.light_name:
             raise UsageError("to have a half-space, there must be a light; add one")
-        light = scene.light_in_world(session.light_name)
+        light = scene.lights_in_world[session.light_name]
         name = free_name(NAME, [each.name for each in light.half_spaces])
         half_space = HalfSpace.through(name, *self._points)
         if not is_lit_side(half_space, light, scene.view):
@@ -553,7 +553,7 @@ def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widg
 
 def _carry(session: Session, light: Light, half_space: HalfSpace) -> None:
     """Attach a half-space to a light, or detach it; its plane stays where it is."""
-    there = session.scene.light_in_world(light.name)
+    there = session.scene.lights_in_world[light.name]
     carry = detached if half_space.carried else attached
     _put_row(session, light, carry(half_space, there))
 

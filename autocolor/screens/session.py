@@ -286,7 +286,7 @@ class Session:
     @property
     def chosen_surface(self) -> Surface | None:
         """The chosen surface; None if the scene has none in use."""
-        return self.scene.surface(self.surface_name) if self.surface_name else None
+        return self.scene.surfaces[self.surface_name] if self.surface_name else None
 
     def choose_surface(self, name: str) -> None:
         """Choose a surface in use by its name; another name changes nothing."""
@@ -303,7 +303,7 @@ class Session:
     @property
     def chosen_light(self) -> Light | None:
         """The chosen light; None if the scene has none."""
-        return self.scene.light(self.light_name) if self.light_name else None
+        return self.scene.lights[self.light_name] if self.light_name else None
 
     def choose_light(self, name: str) -> None:
         """Choose a light by its name."""
@@ -395,7 +395,7 @@ class Session:
         the color in its middle and its last color, unless they are given.
         """
         if self.surface_name:
-            paint = self.scene.surface(self.surface_name).paint
+            paint = self.scene.surfaces[self.surface_name].paint
             if paint.ramp is not None and changes.get("ramp") is None:
                 mesh, before = self._blended.get(self.surface_name, (None, paint))
                 if mesh is not self.scene.mesh:
@@ -403,11 +403,11 @@ class Session:
                 scene = self.scene.with_surface(self.surface_name, paint=before.replace(**changes))
             else:
                 scene = self.scene.with_paint(self.surface_name, **changes)
-            self._edit_paint(scene, message(scene.surface(self.surface_name).paint) if message else "")
+            self._edit_paint(scene, message(scene.surfaces[self.surface_name].paint) if message else "")
 
     def finish(self, name: str) -> None:
         """Give the chosen surface a finish. Raises UsageError for an unknown finish."""
-        surface = self.scene.surface(self.surface_name)
+        surface = self.scene.surfaces[self.surface_name]
         scene = self.scene.with_surface(surface.name, **finished(surface, name))
         self._edit_paint(scene, f"{surface.name}: {name}")
 
@@ -438,7 +438,7 @@ class Session:
         chosen = self.surface_name
         if name == chosen:
             raise UsageError(f"{name} is the chosen surface; point at another, whose paint it takes")
-        scene = self.scene.with_surface(chosen, paint=self.scene.surface(name).paint)
+        scene = self.scene.with_surface(chosen, paint=self.scene.surfaces[name].paint)
         self._edit_paint(scene, f"{chosen}: the paint of {name}; undo goes back")
 
     # Files.

@@ -180,7 +180,7 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
                 "floor": image.floor_of(name),
                 "pixels": int(counts[first : first + levels].sum()),
                 "fixed": _reason_of_fixed(image, name),
-                "paint": paint_values(scene.surface(name).paint),
+                "paint": paint_values(scene.surfaces[name].paint),
             }
         )
     return {
@@ -442,7 +442,7 @@ def _variant_values(
                 f"variant {shown(variant.name)}: {problem}" for problem in error.problems
             ) from None
         changes = {
-            name: _changes(surface["paint"], paint_values(scene.surface(name).paint))
+            name: _changes(surface["paint"], paint_values(scene.surfaces[name].paint))
             for name, surface in surfaces.items()
             if not surface["fixed"]
         }

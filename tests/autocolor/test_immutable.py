@@ -61,7 +61,7 @@ def test_a_scene_from_a_pickle_renders_to_the_same_picture_and_is_edited() -> No
     again = pickle.loads(pickle.dumps(scene))
     assert again.lights == scene.lights
     assert (render(again, (16, 12)).intensity == picture.intensity).all()
-    assert again.with_surface("surface", blend=0.25).surface("surface").paint.blend == 0.25
+    assert again.with_surface("surface", blend=0.25).surfaces["surface"].paint.blend == 0.25
 
 
 @pytest.mark.parametrize(

@@ -355,13 +355,13 @@ def test_a_new_edit_forgets_what_was_undone_and_a_new_variant_does_not() -> None
     studio.undo()
     studio.recolor("body", blend=0.2)
     assert not studio.redo()
-    assert studio.scene.surface("body").paint.blend == 0.2
+    assert studio.scene.surfaces["body"].paint.blend == 0.2
 
 
 def test_a_drag_is_one_step() -> None:
     studio, display = opened()
     scene, before = studio.scene, held(display)
-    own = scene.surface("body").paint.blend
+    own = scene.surfaces["body"].paint.blend
     studio.recolor("body", blend=0.5)
     for blend in (0.4, 0.3, 0.2):
         studio.edit(studio.scene.with_surface("body", blend=blend), same_step=True)
@@ -383,7 +383,7 @@ def test_the_first_edit_of_a_drag_after_an_undo_is_a_step_of_its_own() -> None:
     studio.undo()
     studio.edit(studio.scene.with_surface("body", blend=0.4), same_step=True)
     studio.undo()
-    assert studio.scene.surface("body").paint.blend == 0.2
+    assert studio.scene.surfaces["body"].paint.blend == 0.2
 
 
 # Coarse pictures of movements.
@@ -741,7 +741,7 @@ def test_placing_a_highlight_is_a_step_and_it_is_found_there() -> None:
     assert held(display) == fresh(studio.scene)
     seen = studio.seen_at(*pixel)
     assert seen is not None
-    assert studio.scene.light("key").aim == seen.point
+    assert studio.scene.lights["key"].aim == seen.point
     assert studio.undo()
     assert studio.scene is scene
     assert not studio.undo()
@@ -892,7 +892,7 @@ def test_a_scene_that_was_written_to_a_scene_file_is_saved(tmp_path: Path) -> No
         studio.save_scene(tmp_path / "car")
     assert studio.is_changed
     studio.save_scene(tmp_path / "car" / "scene.toml", overwrite=True)
-    assert read_scene(tmp_path / "car").surface("body").paint.blend == 0.2
+    assert read_scene(tmp_path / "car").surfaces["body"].paint.blend == 0.2
 
 
 def test_a_session_that_is_saved_under_a_name_takes_it_by_one_step(tmp_path: Path) -> None:

@@ -156,7 +156,7 @@ def test_a_change_that_was_read_again_may_be_overwritten(tmp_path: Path) -> None
     assert studio.is_changed
     studio.save_scene(path, overwrite=True)
     assert not studio.is_changed
-    assert not read_scene(path).light("key").on
+    assert not read_scene(path).lights["key"].on
     # A comment is no other scene, and the file may be saved to after it was read again.
     path.write_text(path.read_text() + "# mine\n")
     studio.light("key", on=True)

@@ -114,9 +114,9 @@ def test_a_click_on_a_bar_of_a_screen_mixes_a_color_and_leaves_the_words_and_the
         words = viewer.studio.words
         assert not recent_colors()
         figures.click(viewer, "object, blue", 0.75)
-        assert viewer.studio.scene.surface("body").paint.object_color[2] > 200
+        assert viewer.studio.scene.surfaces["body"].paint.object_color[2] > 200
         figures.click(viewer, "blend bar", 0.25)
-        assert viewer.studio.scene.surface("body").paint.blend == pytest.approx(0.25, abs=0.01)
+        assert viewer.studio.scene.surfaces["body"].paint.blend == pytest.approx(0.25, abs=0.01)
         assert viewer.studio.words is words
     assert recent_colors() == ((1, 2, 3),)
 
@@ -159,7 +159,7 @@ def test_aiming_the_light_at_the_pyramid_takes_the_bright_spot_off_the_plane() -
     point = autocolor.read_scene(figures.SCENES / "pyramid")
     flood = point.with_light("lamp", aim=figure_04.SIDE, concentration=1)
     spot = flood.with_light("lamp", concentration=40)
-    assert point.light("lamp").axis is None
+    assert point.lights["lamp"].axis is None
     assert brightest_of_plane(flood) < 0.5 * brightest_of_plane(point)
     assert brightest_of_plane(spot) < 0.2 * brightest_of_plane(point)
     side = autocolor.render(spot, (320, 240)).ranges.surfaces["pyramid"]
@@ -215,7 +215,7 @@ def test_the_cones_of_figure_10_pick_out_three_objects_of_the_row_and_one() -> N
 
 def test_the_plane_of_figure_4_has_one_spot_that_is_lighter_than_its_paint() -> None:
     studio = autocolor.Studio(autocolor.read_scene(figures.SCENES / "pyramid"), Ramtek9300())
-    paint = studio.scene.surface("plane").paint
+    paint = studio.scene.surfaces["plane"].paint
     first, levels = studio.level_ranges["plane"]
     is_plane = studio.picture.surface_number == studio.picture.surfaces.index("plane") + 1
     lines, elements = np.nonzero(is_plane & (studio.words - first > paint.blend * (levels - 1)))

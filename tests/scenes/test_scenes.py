@@ -170,7 +170,7 @@ def test_the_scene_has_cast_and_machined_surfaces_on_a_stage(scene: Scene) -> No
     assert {part.surface for part in scene.parts if part.name in PARTS} == {"cast", "machined"}
     assert {part.name for part in scene.parts if part.stage} == {"floor"}
     assert 5_000 < len(scene.mesh.node_numbers) < 15_000
-    assert scene.surface("machined").reflectance.exponent > 3 * scene.surface("cast").reflectance.exponent
+    assert scene.surfaces["machined"].reflectance.exponent > 3 * scene.surfaces["cast"].reflectance.exponent
 
 
 def test_the_stress_is_that_of_a_part_that_is_loaded_and_does_not_break(scene: Scene) -> None:

@@ -75,9 +75,9 @@ class MovablePoint(NamedTuple):
         if self.what == AIM:
             return scene.with_light_in_world(self.light, aim=point)
         if self.what == DIRECTION:
-            start = scene.light_in_world(self.light).position
+            start = scene.lights_in_world[self.light].position
             return scene.with_light_in_world(self.light, direction=_step(start, point))
-        value, flap = point[AXES.index(self.axis)], getattr(scene.light(self.light).flaps, self.axis)
+        value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
         value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
         flaps: Any = {self.axis: {self.end: value}}
         return scene.with_light(self.light, flaps=flaps)
@@ -116,7 +116,7 @@ def _handles(movable: MovablePoint, scene: Scene, views: OrthographicViews) -> I
         if movable.what == EYE:
             place = views.mark_position(side, point, target_of(scene))
         elif movable.what == LIGHT:
-            place = views.mark_position(side, point, arrow_end(views, scene.light_in_world(movable.light)))
+            place = views.mark_position(side, point, arrow_end(views, scene.lights_in_world[movable.light]))
         element, line = (round(each) for each in place)
         if side.area.has(element, line):
             yield Handle(movable._replace(side=side.name), element, line, label)

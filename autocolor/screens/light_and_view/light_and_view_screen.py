@@ -153,7 +153,7 @@ class LightAndViewScreen(Screen):
         if not chosen:
             return []
         put = partial(put_light, session, chosen)
-        return list(flap_switches(self.views, session.scene.light(chosen), put))
+        return list(flap_switches(self.views, session.scene.lights[chosen], put))
 
     def handles(self) -> Sequence[Handle]:
         scene, views, chosen = self.session.scene, self.views, self.chosen
@@ -456,6 +456,6 @@ def light_rows(
             )
         )
     if chosen:
-        light = session.scene.light(chosen)
+        light = session.scene.lights[chosen]
         rows += [Section("chosen light"), *parameter_rows(session, light, COLUMNS)]
     return rows

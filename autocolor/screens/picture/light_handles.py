@@ -135,7 +135,7 @@ class LightHandles:
         else:
             scene = flap_placed(scene, seen, key.light, *key.what)
         session.edit(scene)
-        light = scene.light_in_world(key.light)
+        light = scene.lights_in_world[key.light]
         if key.what == HIGHLIGHT:
             points = session.studio.sight.points
             self._placed = light.name, _source_of(light), points, (line, element)

@@ -356,7 +356,7 @@ class PictureEdits:
     def blend(self, step: float) -> None:
         """Change the blend of the selected surface."""
         if self.session.surface_name:
-            blend = self.session.scene.surface(self.session.surface_name).paint.blend
+            blend = self.session.scene.surfaces[self.session.surface_name].paint.blend
             blend = min(1.0, max(0.0, round(blend + step, 6)))
             self.session.paint(lambda paint: f"blend {paint.blend:.2f}", blend=blend)
 
@@ -368,7 +368,7 @@ class PictureEdits:
         name = self.session.surface_name
         if not name:
             return
-        present = in_digits(self.session.scene.surface(name).paint.color)
+        present = in_digits(self.session.scene.surfaces[name].paint.color)
         names = dict.fromkeys(OBJECT_COLORS, "")
         if (paints := self.session.paints) is not None:
             names = dict(zip(map(in_digits, paints.colors), paints.names, strict=True))

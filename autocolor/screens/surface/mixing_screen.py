@@ -257,7 +257,7 @@ class MixingScreen(Screen):
             where = name or "the background"
             return f"pick {in_digits(sample.color)} of {where} as {self._chosen_name}; Esc ends"
         if self._taking and name and not is_chosen:
-            paint = self.session.scene.surface(name).paint
+            paint = self.session.scene.surfaces[name].paint
             if paint.ramp is not None:
                 return f"pick the paint of {name}: a ramp of {len(paint.ramp)} colors; Esc ends"
             colors = f"{in_digits(paint.object_color)} and {in_digits(paint.light_color)}"
@@ -603,7 +603,7 @@ class ColorSection:
     @property
     def _present(self) -> Color:
         """The color that the chosen surface has now."""
-        return self.color_of(self.session.scene.surface(self.session.surface_name).paint)
+        return self.color_of(self.session.scene.surfaces[self.session.surface_name].paint)
 
 
 def _capitalized(text: str) -> str:

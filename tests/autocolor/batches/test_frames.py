@@ -158,7 +158,7 @@ def test_tables_run_together_each_over_the_whole_duration() -> None:
     assert [scene_with(SCENE, frame.settings).ambient for frame in made] == pytest.approx(
         [0, 0.5, 1, 0.5, 0, 0.5, 1]
     )
-    assert [scene_with(SCENE, frame.settings).light("key").intensity for frame in made] == pytest.approx(
+    assert [scene_with(SCENE, frame.settings).lights["key"].intensity for frame in made] == pytest.approx(
         [0, 1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6, 1]
     )
 

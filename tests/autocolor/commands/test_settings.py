@@ -78,7 +78,7 @@ def test_a_field_is_set_by_its_key(settings: str, value: object) -> None:
 def test_of_two_names_the_longer_is_meant() -> None:
     changed = with_settings(scene(), ("lights.key.2.intensity=3", "lights.key.intensity=2"))
     assert [light.intensity for light in changed.lights] == [2, 3]
-    rows = with_settings(scene(), ("lights.key.half_spaces.a.b.on=false",)).light("key").half_spaces
+    rows = with_settings(scene(), ("lights.key.half_spaces.a.b.on=false",)).lights["key"].half_spaces
     assert [row.on for row in rows] == [False, True]
 
 
@@ -86,7 +86,7 @@ def test_a_half_space_is_added_whole() -> None:
     door = "{point = [0, 0, 0], direction = [1, 0, 0], edge_width = 0.5, carried = true}"
     for name in ("barn door", '"barn door"'):
         added = with_settings(scene(), (f"lights.key.2.half_spaces.{name}={door}",))
-        assert added.light("key.2").half_spaces == (
+        assert added.lights["key.2"].half_spaces == (
             HalfSpace("barn door", (0, 0, 0), (1, 0, 0), 0.5, carried=True),
         )
 
@@ -102,12 +102,12 @@ def test_a_scalar_is_set_where_there_was_none_in_any_order_and_unset() -> None:
 
 def test_what_is_named_none_stays_a_name() -> None:
     named = scene().replace(surfaces=(*scene().surfaces, Surface("none"), Surface("a, b")))
-    assert with_settings(named, ("parts.side.surface=none",)).part("side").surface == "none"
+    assert with_settings(named, ("parts.side.surface=none",)).parts["side"].surface == "none"
     with pytest.raises(UsageError):
         with_settings(named, ("parts.side.surface=None",))
     changed = with_settings(named, ("surfaces.none.levels=9", "surfaces.none.levels=none"))
-    assert changed.surface("none").levels is None
-    linked = with_settings(named, ('lights.key.only_surfaces="a, b"',)).light("key").links
+    assert changed.surfaces["none"].levels is None
+    linked = with_settings(named, ('lights.key.only_surfaces="a, b"',)).lights["key"].links
     assert linked.only_surfaces == ("a, b",)
 
 

@@ -153,7 +153,7 @@ def test_the_steps_in_the_window_of_a_studio_are_its_steps(monitors: list[Any]) 
     assert studio.scene.equals(before.with_light("key", on=False))
     assert shows_its_scene(studio)
     assert studio.undo(2)
-    assert studio.scene.light("key").intensity == 1
+    assert studio.scene.lights["key"].intensity == 1
     assert shows_its_scene(studio)
 
 
@@ -167,7 +167,7 @@ def test_an_error_in_the_window_of_a_studio_leaves_its_steps_on_the_display(moni
     monitors[0].script = staticmethod(script)
     with pytest.raises(KeyboardInterrupt):
         studio.view_window()
-    assert not studio.scene.light("key").on
+    assert not studio.scene.lights["key"].on
     assert shows_its_scene(studio)
 
 

@@ -59,7 +59,7 @@ def test_all_lights_and_the_ambient_light_add_up_to_the_intensity() -> None:
     assert {light.name for light in explanation.lights} == {light.name for light in studio.scene.lights}
     assert explanation.point is not None
     for light in explanation.lights:
-        row = studio.scene.light(light.name)
+        row = studio.scene.lights[light.name]
         assert light.light == studio.scene.lights.index(row) + 1
         if row.axis is None:
             assert light.cos_light is None

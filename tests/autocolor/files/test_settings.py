@@ -62,7 +62,7 @@ def test_a_number_as_a_name_needs_no_quotes() -> None:
     scene = wall_scene()
     scene = scene.replace(surfaces=(*scene.surfaces, scene.surfaces[0].replace(name="2")))
     assert scene_with(scene, {"parts.wall.surface": "2"}).parts[0].surface == "2"
-    assert scene_with(scene, {"lights.key.only_surfaces": "2"}).light("key").links.only_surfaces == ("2",)
+    assert scene_with(scene, {"lights.key.only_surfaces": "2"}).lights["key"].links.only_surfaces == ("2",)
 
 
 @pytest.mark.parametrize(("whole", "bands"), [(None, 16), ({"name": "x", "bands": 4}, 4)])

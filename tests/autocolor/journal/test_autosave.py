@@ -113,7 +113,7 @@ def test_a_first_scene_of_no_file_is_saved_beside_the_journal(state: Path) -> No
     (path,) = journals(state)
     session = read_journal(path)
     assert session.source.path == str(path.parent / "scene")
-    assert not session.history.scene.light("key").on
+    assert not session.history.scene.lights["key"].on
     assert session.history.scene.ambient == 0.7
     autosave.end()
     assert list((state / "sessions").iterdir()) == []

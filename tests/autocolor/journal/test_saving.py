@@ -58,8 +58,8 @@ def test_a_scene_of_no_file_is_saved_to_new_names_and_then_to_the_same(work: Pat
     assert not studio.is_changed
     studio.recolor("body", blend=0.5)
     assert studio.save_session(work) == saved
-    assert read_scene(work / "coupe").surface("body").paint.blend == 0.5
-    assert read_picture(work / "coupe.npz").scene.surface("body").paint.blend == 0.5
+    assert read_scene(work / "coupe").surfaces["body"].paint.blend == 0.5
+    assert read_picture(work / "coupe.npz").scene.surfaces["body"].paint.blend == 0.5
     assert sorted(path.name for path in work.iterdir()) == ["coupe", "coupe.npz"]
 
 
@@ -83,7 +83,7 @@ def test_a_scene_saved_under_a_name_belongs_to_the_new_files(scene_file: Path, w
     assert not studio.reopen()
     studio.recolor("body", blend=0.5)
     assert studio.save_session(scene_file.parent) == saved
-    assert read_scene(saved.scene).surface("body").paint.blend == 0.5
+    assert read_scene(saved.scene).surfaces["body"].paint.blend == 0.5
     assert read_picture(saved.picture).scene.name == "red"
     assert contents(scene_file.parent) == before
 
@@ -143,11 +143,11 @@ def test_a_scene_file_keeps_its_comments_and_has_one_backup(scene_file: Path, wo
     assert saved.message(work) == f"saved {scene_file} and car.npz; what was there is in {backup}"
     assert backup.read_text() == before
     assert scene_file.read_text().startswith(COMMENT)
-    assert read_scene(scene_file).surface("body").paint.blend == 0.25
+    assert read_scene(scene_file).surfaces["body"].paint.blend == 0.25
     studio.recolor("body", blend=0.5)
     assert studio.save_session(work) == SavedFiles(scene_file, work / "car.npz")
     assert [path.name for path in scene_file.parent.glob("scene*")].count("scene-3.toml") == 0
-    assert read_scene(scene_file).surface("body").paint.blend == 0.5
+    assert read_scene(scene_file).surfaces["body"].paint.blend == 0.5
 
 
 def test_the_backup_of_a_store_has_the_changes_that_are_only_in_its_log(work: Path) -> None:
@@ -163,7 +163,7 @@ def test_the_backup_of_a_store_has_the_changes_that_are_only_in_its_log(work: Pa
     studio.recolor("body", blend=0.25)
     (backup,) = studio.save_session(work).backups
     assert read_scene(backup).view.angle == 7
-    assert read_scene(path).surface("body").paint.blend == 0.25
+    assert read_scene(path).surfaces["body"].paint.blend == 0.25
 
 
 def test_a_picture_file_that_was_opened_is_saved_to_and_has_a_backup(work: Path) -> None:
@@ -174,7 +174,7 @@ def test_a_picture_file_that_was_opened_is_saved_to_and_has_a_backup(work: Path)
     saved = studio.save_session(work)
     assert saved == SavedFiles(work / "scene" / "scene.toml", work / "old.npz", (work / "old-2.npz",))
     assert (work / "old-2.npz").read_bytes() == before
-    assert read_picture(work / "old.npz").scene.surface("body").paint.blend == 0.25
+    assert read_picture(work / "old.npz").scene.surfaces["body"].paint.blend == 0.25
 
 
 def test_a_picture_of_ours_needs_no_backup_even_if_its_scene_could_not_be_written(
@@ -193,7 +193,7 @@ def test_a_picture_of_ours_needs_no_backup_even_if_its_scene_could_not_be_writte
             studio.save_session(work)
     studio.recolor("body", blend=0.5)
     assert studio.save_session(work) == saved
-    assert read_picture(saved.picture).scene.surface("body").paint.blend == 0.5
+    assert read_picture(saved.picture).scene.surfaces["body"].paint.blend == 0.5
 
 
 def test_a_file_that_was_changed_since_is_left_alone_and_told(scene_file: Path, work: Path) -> None:

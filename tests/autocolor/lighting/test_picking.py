@@ -94,11 +94,11 @@ def test_any_light_on_the_coupe_gets_its_highlight_where_it_is_wanted_and_is_fou
     assume(seen is not None)
     assert seen is not None
     assume(dot(seen.normal, unit(minus(scene.view.eye, seen.point))) > 1e-3)
-    distance = math.dist(scene.light_in_world("lamp").position, seen.point)
+    distance = math.dist(scene.lights_in_world["lamp"].position, seen.point)
     assume(distance > 1e-3)
 
     placed = highlight_placed(scene, seen, "lamp")
-    light = placed.light_in_world("lamp")
+    light = placed.lights_in_world["lamp"]
     assert math.dist(light.position, seen.point) == pytest.approx(distance, rel=1e-9)
     # Figure 2: E is the angle between the reflected ray of light and the ray to the eye.
     to_light = unit(minus(light.position, seen.point))
@@ -113,11 +113,11 @@ def test_any_light_on_the_coupe_gets_its_highlight_where_it_is_wanted_and_is_fou
     if before.aim is not None:
         assert light.aim == pytest.approx(seen.point, abs=1e-12)
     # All else stays, and so does what follows it.
-    after = placed.light("lamp")
+    after = placed.lights["lamp"]
     places = {"position": before.position, "aim": before.aim, "direction": before.direction}
     assert with_values(after, places) == before
     if is_followed and before.aim is not None:
-        beside = placed.light_in_world("beside").position
+        beside = placed.lights_in_world["beside"].position
         assert beside == pytest.approx(plus(seen.point, (0, 0, 0.5)), abs=1e-9)
 
     # The inverse finds the pixel, or one whose cosine is equal up to rounding.
@@ -210,10 +210,10 @@ def test_where_words_stand_for_normals_a_highlight_is_where_it_is_placed(
     number: int, line: int, element: int
 ) -> None:
     studio = studio_of(number)
-    distance = math.hypot(*studio.scene.light("key").position)
+    distance = math.hypot(*studio.scene.lights["key"].position)
     studio.place_highlight("key", line, element)
     assert math.dist(studio.highlight_of("key") or (0, 0), (line, element)) < 3
-    assert math.hypot(*studio.scene.light("key").position) == pytest.approx(distance)
+    assert math.hypot(*studio.scene.lights["key"].position) == pytest.approx(distance)
     # The brightest word is at the pixel, or in a cell beside it.
     brightness = studio.entries[studio.words].sum(axis=2, dtype=np.int64)
     around = brightness[line - 12 : line + 13, element - 12 : element + 13]
@@ -265,7 +265,7 @@ def test_a_cone_ends_at_the_point_and_its_inner_angle_stays_within_it(
 ) -> None:
     light = Light("light", (0.0, -3.0, 0.0), direction=(0.0, 2.0, 0.0), cone_angle=30)
     for expected, row in ((None, light), (inner, light.replace(inner_angle=20))):
-        placed = cone_placed(lit(row), at(point), "light").light("light")
+        placed = cone_placed(lit(row), at(point), "light").lights["light"]
         assert placed.cone_angle == pytest.approx(angle)
         assert placed.inner_angle == (None if expected is None else pytest.approx(expected))
 
@@ -276,10 +276,10 @@ def test_a_cone_and_a_flap_of_a_light_at_the_eye_end_at_the_visible_point() -> N
     scene = CAR.scene.replace(lights=(*CAR.scene.lights, lamp))
     seen = seen_at(Sight(scene, CAR.points), 24, 20)
     assert seen is not None
-    angle = cone_placed(scene, seen, "lamp").light("lamp").cone_angle
+    angle = cone_placed(scene, seen, "lamp").lights["lamp"].cone_angle
     cosine = dot(scene.view.axes[2].tolist(), unit(minus(seen.point, scene.view.eye)))
     assert angle == pytest.approx(math.degrees(math.acos(cosine)))
-    flapped = flap_placed(scene, seen, "lamp", "x", "maximum").light("lamp")
+    flapped = flap_placed(scene, seen, "lamp", "x", "maximum").lights["lamp"]
     assert (flapped.flaps.x, flapped.follows) == (Flap(maximum=seen.point[0]), "eye")
 
 
@@ -296,7 +296,7 @@ def test_a_flap_ends_at_the_coordinate_of_the_point_and_its_minimum_never_passes
         "maximum": Flap(flap.minimum, max(to, flap.minimum), on),
     }
     for end, after in expected.items():
-        placed = flap_placed(scene, at(point), "light", axis, end).light("light")
+        placed = flap_placed(scene, at(point), "light", axis, end).lights["light"]
         assert placed.flaps == flaps.replace(**{axis: after})
 
 
@@ -309,7 +309,7 @@ def test_a_half_space_ends_at_the_point_and_moves_along_its_direction(
         HalfSpace("right", start, direction, on=False),
     )
     light = Light("light", (0.3, -2.0, 0.5), direction=toward, half_spaces=planes)
-    placed = half_space_placed(lit(light), at(point), "light", "left").light("light")
+    placed = half_space_placed(lit(light), at(point), "light", "left").lights["light"]
     left, right = placed.half_spaces
     assert right == planes[1]
     assert left == planes[0].replace(point=left.point)

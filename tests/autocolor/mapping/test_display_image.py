@@ -106,7 +106,7 @@ def loaded(before: DisplayImage, after: DisplayImage) -> npt.NDArray[np.uint8]:
 @given(scenes(), names, paints())
 def test_another_paint_loads_the_range_of_its_surface_alone(scene: Scene, name: str, paint: Any) -> None:
     session = Session(scene)
-    is_other = scene.surface(name).paint != paint
+    is_other = scene.surfaces[name].paint != paint
     before = session.edit(lambda scene: scene.with_surface(name, paint=paint))
     loads = [(first, len(entries)) for first, entries in session.image.loads_after(before)]
     has_words = name in session.image.ranges and name not in session.image.bands

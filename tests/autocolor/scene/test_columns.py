@@ -219,7 +219,7 @@ def test_a_row_of_another_class_and_tables_of_other_rows_hold() -> None:
     lights = [Light("key", (0, 0, 0)), Light("rim", (2, 0, 0))]
     scene = wall_scene(lights=lights)
     moved = scene.with_light("rim", position=(4, 0, 0))
-    assert scene.between(moved, 0.5).light("rim").position == (3, 0, 0)
+    assert scene.between(moved, 0.5).lights["rim"].position == (3, 0, 0)
     assert scene.between(moved.without_light("key"), 0.5).lights is scene.lights
 
 

@@ -229,7 +229,7 @@ def edited(scene: Scene, table: str, key: str) -> Scene:
 def row_of(scene: Scene, table: str) -> Row | None:
     """The row of a scene that the edits of a table change."""
     if table in ("flaps", "half_spaces"):
-        light = scene.light("key")
+        light = scene.lights["key"]
         return light.flaps.y if table == "flaps" else next(iter(light.half_spaces), None)
     if table in ROWS:
         (row,) = (row for row in vars(scene)[table] if row.name == ROWS[table])
@@ -433,12 +433,12 @@ def toml(value: Any) -> str:
 @every_column_of_a_light
 def test_a_column_comes_through_copies_and_rigs(tmp_path: Path, table: str, key: str) -> None:
     scene = edited(start(), table, key)
-    light = scene.light("key")
-    assert scene.with_copied_light("key", "copy").light("copy").replace(name="key") == light
+    light = scene.lights["key"]
+    assert scene.with_copied_light("key", "copy").lights["copy"].replace(name="key") == light
     twice = scene.with_mirrored_light("key", "x", 0.25, "there").with_mirrored_light(
         "there", "x", 0.25, "back"
     )
-    back, plain = to_plain(twice.light("back").replace(name="key")), to_plain(light)
+    back, plain = to_plain(twice.lights["back"].replace(name="key")), to_plain(light)
     assert numbers_in(back) == pytest.approx(numbers_in(plain))
     assert without_numbers(back) == without_numbers(plain)
     assert same(scene.with_rig(scene.rig), scene)
@@ -469,7 +469,7 @@ NOT_FAR_AWAY |= {"cone_angle", "inner_angle", "flaps", "half_spaces", "falloff",
 
 @every_column_of_a_light
 def test_a_far_light_keeps_all_columns_but_its_place_and_its_links_to_parts(table: str, key: str) -> None:
-    light = edited(start(), table, key).light_in_world("key")
+    light = edited(start(), table, key).lights_in_world["key"]
     far, plain = to_plain(far_light(light, (0.0, 0.0, 0.0))), to_plain(light)
     assert {name for name in plain if far.get(name) != plain[name]} <= NOT_FAR_AWAY
     assert "only_parts" not in far

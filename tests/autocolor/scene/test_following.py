@@ -65,12 +65,12 @@ def test_a_light_to_the_right_of_the_eye_stays_there_when_the_picture_is_turned(
 
 def test_a_light_that_follows_an_aim_moves_with_it() -> None:
     scene = followed_car()
-    before = scene.light_in_world("fill").position
+    before = scene.lights_in_world["fill"].position
     assert before == (-2.0, -2.0, 1.5)
     moved = scene.with_light("key", aim=(0.5, 0.25, -1.0))
-    assert moved.light_in_world("fill").position == (-1.5, -1.75, 0.5)
+    assert moved.lights_in_world["fill"].position == (-1.5, -1.75, 0.5)
     # The place of the light that is followed does not matter.
-    assert moved.with_light("key", position=(9, 9, 9)).light_in_world("fill").position == (-1.5, -1.75, 0.5)
+    assert moved.with_light("key", position=(9, 9, 9)).lights_in_world["fill"].position == (-1.5, -1.75, 0.5)
 
 
 def test_lights_follow_each_other_in_a_chain_in_any_order() -> None:
@@ -103,11 +103,11 @@ def test_a_light_is_placed_in_the_world_whatever_it_follows(
     scene = followed_car().with_view(eye=(3, -2, 1), angle=20)
     aim = (position[0] + away[0], position[1] + away[1], position[2] + away[2])
     placed = scene.with_light_in_world(name, position=position, aim=aim)
-    light = placed.light_in_world(name)
+    light = placed.lights_in_world[name]
     assert light.position == pytest.approx(position, abs=1e-9)
     assert light.aim == pytest.approx(aim, abs=1e-9)
-    assert placed.light(name).follows == scene.light(name).follows
-    turned = placed.with_light_in_world(name, direction=away, intensity=2).light_in_world(name)
+    assert placed.lights[name].follows == scene.lights[name].follows
+    turned = placed.with_light_in_world(name, direction=away, intensity=2).lights_in_world[name]
     assert turned.direction == pytest.approx(away, abs=1e-9)
     assert (turned.aim, turned.intensity) == (None, 2.0)
 
@@ -115,11 +115,11 @@ def test_a_light_is_placed_in_the_world_whatever_it_follows(
 def test_a_light_is_put_in_the_world_and_follows_something_else_at_once() -> None:
     scene = followed_car().with_view(angle=20)
     placed = scene.with_light_in_world("fill", follows="eye", position=(1, 2, 3))
-    assert placed.light("fill").follows == "eye"
-    assert placed.light_in_world("fill").position == pytest.approx((1, 2, 3))
+    assert placed.lights["fill"].follows == "eye"
+    assert placed.lights_in_world["fill"].position == pytest.approx((1, 2, 3))
     freed = scene.with_light_in_world("fill", follows=None, intensity=2)
-    assert freed.light("fill").position == pytest.approx(scene.light_in_world("fill").position)
-    assert (freed.light("fill").follows, freed.light("fill").intensity) == (None, 2.0)
+    assert freed.lights["fill"].position == pytest.approx(scene.lights_in_world["fill"].position)
+    assert (freed.lights["fill"].follows, freed.lights["fill"].intensity) == (None, 2.0)
 
 
 @pytest.mark.parametrize("position", ["abc", (1, 2), ("x", 1, 2), None, (math.nan, 0, 0)])
@@ -140,9 +140,9 @@ def test_an_aim_that_rounding_would_move_onto_its_light_still_tells_the_directio
 ) -> None:
     light = Light("near", (0, 0, 0), aim=(0, distance, 0), follows=follows, concentration=5)
     scene = wall_scene(view=VIEW, lights=[Light("key", (0, -3, 0), aim=(0.7, -2, 0.1)), light])
-    assert scene.light_in_world("near").axis == pytest.approx((0, 1, 0), abs=1e-6)
-    followed = scene.with_new_light("last", position=(0, 0, 0), follows="near").light_in_world("last")
-    assert followed.position == pytest.approx(scene.light_in_world("near").position, abs=1e-8)
+    assert scene.lights_in_world["near"].axis == pytest.approx((0, 1, 0), abs=1e-6)
+    followed = scene.with_new_light("last", position=(0, 0, 0), follows="near").lights_in_world["last"]
+    assert followed.position == pytest.approx(scene.lights_in_world["near"].position, abs=1e-8)
     assert render(scene, (8, 8)).intensity.max() > 0
 
 
@@ -150,9 +150,9 @@ def test_a_light_named_eye_exists_but_to_follow_eye_means_the_eye() -> None:
     scene = wall_scene(
         lights=[Light("eye", (5, 5, 5), aim=(0, 0, 0), follows="eye"), Light("b", (0, 0, 0), follows="eye")]
     )
-    assert scene.light_in_world("b").position == scene.view.eye
+    assert scene.lights_in_world["b"].position == scene.view.eye
     assert followers_of("eye", scene.lights) == []
-    assert names_to_follow(scene.light("b"), scene.lights) == []
+    assert names_to_follow(scene.lights["b"], scene.lights) == []
     assert [light.name for light in scene.without_light("eye").lights] == ["b"]
 
 
@@ -175,8 +175,8 @@ def test_the_mirrored_copy_of_a_follower_is_mirrored_in_the_world_and_follows(
     scene = car().with_view(eye=(eye[0] + 5, eye[1], eye[2]), angle=30)
     scene = scene.replace(lights=(*scene.lights, light.replace(name="lamp", flaps={})))
     both = scene.with_mirrored_light("lamp", axis, 0.25, "other")
-    one, other = both.light_in_world("lamp"), both.light_in_world("other")
-    assert both.light("other").follows == "eye"
+    one, other = both.lights_in_world["lamp"], both.lights_in_world["other"]
+    assert both.lights["other"].follows == "eye"
     place = "xyz".index(axis)
     mirrored = np.array(one.position)
     mirrored[place] = 0.5 - mirrored[place]

@@ -251,9 +251,9 @@ def test_a_surface_is_renamed_together_with_the_links_to_it() -> None:
     scene = linked_to_spare()
     renamed = scene.replace(
         surfaces=(*scene.surfaces[:2], Surface("other")),
-        lights=(scene.light("key").replace(except_surfaces=["other"]),),
+        lights=(scene.lights["key"].replace(except_surfaces=["other"]),),
     )
-    assert renamed.light("key").links == Links(except_surfaces=("other",))
+    assert renamed.lights["key"].links == Links(except_surfaces=("other",))
 
 
 @pytest.mark.parametrize(
@@ -270,7 +270,7 @@ def test_a_surface_is_renamed_together_with_the_links_to_it() -> None:
 def test_a_rig_leaves_out_the_links_to_what_a_scene_does_not_have(links: Links, left: Links) -> None:
     scene = panels()
     rig = Rig(*scene.object_bounds, (Light("rim", (3, -4, 1), links=links),))
-    assert scene.with_rig(rig).light("rim").links == left
+    assert scene.with_rig(rig).lights["rim"].links == left
     assert links.within(["body", "glass", "chrome"], ["a", "b", "z"]) == links
 
 

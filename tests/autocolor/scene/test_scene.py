@@ -161,7 +161,7 @@ def test_tables_for_what_a_scene_is_made_of_are_taken() -> None:
         lights=[{"name": "key", "position": (1, 2, 3)}],  # type: ignore[list-item]
     )
     assert scene.view == View((5, 5, 5), target=(0, 0, 0))
-    assert scene.surface("cube").reflectance.diffuse == 0.2
+    assert scene.surfaces["cube"].reflectance.diffuse == 0.2
     assert scene.lights == (Light("key", (1, 2, 3)),)
 
 
@@ -176,7 +176,7 @@ def test_as_many_surfaces_as_there_can_be_leave_none_to_create_and_share_the_las
 def test_a_new_light_can_be_added_to_any_scene(scene: Scene) -> None:
     light = new_light_of(scene)
     more = scene.replace(lights=(*scene.lights, light))
-    assert more.light(light.name) is light
+    assert more.lights[light.name] is light
 
 
 def test_a_new_light_is_above_the_eyes_side_and_aimed_at_the_middle() -> None:
@@ -235,7 +235,7 @@ def test_an_edit_shares_all_that_it_does_not_change() -> None:
     assert edited.mesh is scene.mesh
     assert edited.surfaces is scene.surfaces
     assert edited.lights[1] is scene.lights[1]
-    assert (edited.light("key").intensity, scene.light("key").intensity) == (2.0, 1.0)
+    assert (edited.lights["key"].intensity, scene.lights["key"].intensity) == (2.0, 1.0)
 
 
 def test_a_light_is_added_after_the_others_and_removed_by_its_name() -> None:
@@ -243,7 +243,7 @@ def test_a_light_is_added_after_the_others_and_removed_by_its_name() -> None:
     names = [light.name for light in scene.lights]
     more = scene.with_new_light("lamp", position=(0, 4, 3), cone_angle=None, flaps={"z": {"minimum": 0.1}})
     assert [light.name for light in more.lights] == [*names, "lamp"]
-    assert more.light("lamp") == Light("lamp", (0, 4, 3), flaps=Flaps(z=Flap(0.1)))
+    assert more.lights["lamp"] == Light("lamp", (0, 4, 3), flaps=Flaps(z=Flap(0.1)))
     assert cost_of_edit(more.without_light("lamp"), scene) is None
     assert [light.name for light in more.without_light(names[0]).lights] == [*names[1:], "lamp"]
     assert more.mesh is scene.mesh
@@ -272,7 +272,7 @@ def test_a_copied_light_stands_after_the_others_under_a_free_name() -> None:
     scene = scene_of(car(), lights=[Light("key", (0, -1, 0), 0.5), Light("rim", (0, 2, 0))])
     more = scene.with_copied_light("key").with_copied_light("key 2").with_copied_light("rim", "back")
     assert [light.name for light in more.lights] == ["key", "rim", "key 2", "key 3", "back"]
-    assert more.light("key 3") == scene.light("key").replace(name="key 3")
+    assert more.lights["key 3"] == scene.lights["key"].replace(name="key 3")
 
 
 def test_a_mirrored_light_is_a_copy_on_the_other_side_of_the_object() -> None:
@@ -281,8 +281,8 @@ def test_a_mirrored_light_is_a_copy_on_the_other_side_of_the_object() -> None:
     assert (low[0], high[0]) == (0.0, 1.0)
     more = scene.with_mirrored_light("key").with_mirrored_light("key")
     assert [light.name for light in more.lights] == ["key", "key mirrored", "key mirrored 2"]
-    assert more.light("key mirrored") == Light("key mirrored", (2, -1, 3), aim=(0.75, 0, 0))
-    assert scene.with_mirrored_light("key", "y", -1, "back").light("back").position == (-1, -1, 3)
+    assert more.lights["key mirrored"] == Light("key mirrored", (2, -1, 3), aim=(0.75, 0, 0))
+    assert scene.with_mirrored_light("key", "y", -1, "back").lights["back"].position == (-1, -1, 3)
 
 
 @given(scenes())
@@ -333,7 +333,7 @@ def test_a_row_is_found_by_number_or_by_name_after_every_edit() -> None:
     assert lights == tuple(lights)
     assert hash(lights) == hash(tuple(lights))
     assert type(lights[:1]) is tuple
-    assert lights[0] is lights["key"] is scene.light("key")
+    assert lights[0] is lights["key"] is scene.lights["key"]
     unknown: object = "keys"
     assert unknown not in lights
 
@@ -341,11 +341,11 @@ def test_a_row_is_found_by_number_or_by_name_after_every_edit() -> None:
 test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = refused(
     lambda ask: ask(car_scene()),
     [
-        (lambda scene: scene.light("keys"), "there is no light 'keys'; did you mean 'key'?"),
+        (lambda scene: scene.lights["keys"], "there is no light 'keys'; did you mean 'key'?"),
         (lambda scene: scene.lights["keys"], "there is no light 'keys'; did you mean 'key'?"),
         (lambda scene: scene.replace(lights=()).lights["key"], "there is no row 'key'"),
-        (lambda scene: scene.surface("dor"), "there is no surface 'dor'; did you mean 'door'?"),
-        (lambda scene: scene.part("x"), "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
+        (lambda scene: scene.surfaces["dor"], "there is no surface 'dor'; did you mean 'door'?"),
+        (lambda scene: scene.parts["x"], "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.without_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
         (lambda scene: scene.with_copied_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
@@ -424,13 +424,13 @@ def test_a_change_of_paint_is_that_of_the_surface_and_the_same_paint_is_the_same
     scene = scene_of(cube(), surfaces="parts")
     blue = {"object_color": "#0000ff", "blend": 0.25}
     assert scene.with_paint("cube", **blue).equals(scene.with_surface("cube", **blue))  # type: ignore[arg-type]
-    paint = scene.surface("cube").paint
+    paint = scene.surfaces["cube"].paint
     assert scene.with_paint("cube", blend=paint.blend) is scene
 
 
 @given(scenes())
 def test_the_coordinates_of_the_object_follow_an_edit_of_the_stage(scene: Scene) -> None:
-    edited = scene.with_part("part 0", stage=not scene.part("part 0").stage)
+    edited = scene.with_part("part 0", stage=not scene.parts["part 0"].stage)
     for each in (scene, edited):
         assert each.object_coordinates.tolist() == object_coordinates(each.mesh, each.parts).tolist()
 

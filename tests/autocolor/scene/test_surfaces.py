@@ -146,7 +146,7 @@ def test_each_finish_looks_different() -> None:
     )
     images = {}
     for name in FINISHES:
-        finish = scene.with_surface("sphere", **finished(scene.surface("sphere"), name))
+        finish = scene.with_surface("sphere", **finished(scene.surfaces["sphere"], name))
         images[name] = image(finish, render(finish, (80, 60))).astype(float)
     for one, other in itertools.combinations(FINISHES, 2):
         assert np.abs(images[one] - images[other]).mean() > 1, (one, other)

@@ -43,7 +43,7 @@ class PaintingHand(Hand):
     @property
     def paint(self) -> Paint:
         """The paint of the chosen surface."""
-        return self.viewer.studio.scene.surface(self.viewer.session.surface_name).paint
+        return self.viewer.studio.scene.surfaces[self.viewer.session.surface_name].paint
 
     def widget(self, label: str) -> Widget:
         """A widget that can be seen, by its key or its label."""

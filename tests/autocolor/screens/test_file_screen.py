@@ -328,7 +328,7 @@ def test_a_scene_is_saved_under_a_name_of_picked_letters(hand: Hand, folder: Pat
     assert hand.viewer.caption.startswith("autocolor - red-1 - ")
     hand.viewer.studio.recolor("low", object_color="#123456")
     hand.pick("save")
-    assert read_scene(folder / "red-1").surface("low").paint.object_color == (18, 52, 86)
+    assert read_scene(folder / "red-1").surfaces["low"].paint.object_color == (18, 52, 86)
     assert "boxes" not in rows_of(hand)
     # A free name is proposed, and taken by OK.
     save_as(hand)

@@ -36,7 +36,7 @@ def session_of(light: Light) -> Session:
 
 def row_of(session: Session, label: str, name: str = "key") -> Choice:
     """A choice among the rows of a light."""
-    rows = parameter_rows(session, session.scene.light(name), ["kind", "follows", "falloff"])
+    rows = parameter_rows(session, session.scene.lights[name], ["kind", "follows", "falloff"])
     (row,) = [row for row in rows if isinstance(row, Choice) and row.label == label]
     return row
 
@@ -46,7 +46,7 @@ def test_every_kind_can_be_chosen_from_every_other() -> None:
         for light in (AIMED, AIMED.replace(direction=(1, 0, -1)), Light("key", (2.0, -3.0, 4.0))):
             session = session_of(light)
             choose_kind(session, light, kind)
-            now = session.scene.light("key")
+            now = session.scene.lights["key"]
             assert kind_of(now) == kind
             assert [now.aim is not None, now.direction is not None] == [kind == AIM, kind == DIRECTION]
             assert now.position == light.position
@@ -61,7 +61,7 @@ def test_a_point_source_has_no_concentration_and_no_cone() -> None:
     soft = AIMED.replace(inner_angle=10, at_infinity=True)
     session = session_of(soft)
     choose_kind(session, soft, POINT)
-    light = session.scene.light("key")
+    light = session.scene.lights["key"]
     assert light == Light("key", AIMED.position)
     columns = tuple(fields_of(Light))
     dim = {row.label for row in parameter_rows(session, light, columns) if row.why_not == NEEDS_AXIS}
@@ -91,48 +91,48 @@ def test_a_light_can_follow_the_eye_and_each_light_with_an_aim_and_stays_where_i
     assert row_of(session, "follows").names == ("world", "eye")
     row = row_of(session, "follows", "fill")
     assert (row.names, row.present) == (("world", "eye", "key"), "world")
-    before, picture = session.scene.light_in_world("fill"), session.studio.picture.intensity
+    before, picture = session.scene.lights_in_world["fill"], session.studio.picture.intensity
     for follows in ("eye", "key", "eye", "world"):
         row_of(session, "follows", "fill").choose(follows)
-        light = session.scene.light_in_world("fill")
-        assert session.scene.light("fill").follows == (None if follows == "world" else follows)
+        light = session.scene.lights_in_world["fill"]
+        assert session.scene.lights["fill"].follows == (None if follows == "world" else follows)
         assert light.position == pytest.approx(before.position)
         assert light.direction == pytest.approx(before.direction)
         assert row_of(session, "follows", "fill").present == follows
         assert all_close(session.studio.picture.intensity, picture, abs=1e-5)
-    assert session.scene.light("fill").position == pytest.approx(before.position)
+    assert session.scene.lights["fill"].position == pytest.approx(before.position)
     # No light is offered that follows this one.
     row_of(session, "follows", "fill").choose("key")
-    choose_kind(session, session.scene.light("fill"), AIM)
+    choose_kind(session, session.scene.lights["fill"], AIM)
     assert row_of(session, "follows").names == ("world", "eye")
 
 
 def test_a_light_that_follows_the_eye_gets_an_aim_where_it_shines_and_a_direction_from_there() -> None:
     session = followed()
     row_of(session, "follows", "fill").choose("eye")
-    axis = session.scene.light_in_world("fill").axis
+    axis = session.scene.lights_in_world["fill"].axis
     for kind in (AIM, DIRECTION):
-        choose_kind(session, session.scene.light("fill"), kind)
-        assert kind_of(session.scene.light("fill")) == kind
-        assert session.scene.light_in_world("fill").axis == pytest.approx(axis)
-    choose_kind(session, session.scene.light("fill"), POINT)
-    choose_kind(session, session.scene.light("fill"), AIM)
-    assert session.scene.light_in_world("fill").aim == pytest.approx((0.5, 0.5, 0.5))
+        choose_kind(session, session.scene.lights["fill"], kind)
+        assert kind_of(session.scene.lights["fill"]) == kind
+        assert session.scene.lights_in_world["fill"].axis == pytest.approx(axis)
+    choose_kind(session, session.scene.lights["fill"], POINT)
+    choose_kind(session, session.scene.lights["fill"], AIM)
+    assert session.scene.lights_in_world["fill"].aim == pytest.approx((0.5, 0.5, 0.5))
 
 
 def test_choosing_a_falloff_gives_a_light_a_reach_and_keeps_one_that_it_has() -> None:
     session = session_of(AIMED)
     row_of(session, "falloff").choose("quadratic")
-    assert session.scene.light("key").reach == pytest.approx(math.sqrt(3))
+    assert session.scene.lights["key"].reach == pytest.approx(math.sqrt(3))
     put_light(session, "key", {"reach": 7})
     row_of(session, "falloff").choose("linear")
-    assert session.scene.light("key").reach == 7
-    assert session.scene.light("key").falloff == "linear"
+    assert session.scene.lights["key"].reach == 7
+    assert session.scene.lights["key"].falloff == "linear"
 
 
 @pytest.mark.parametrize(("cone", "inner"), [(40.0, 25.0), (25.0, 25.0), (20.0, 20.0), (None, None)])
 def test_the_inner_angle_stays_within_the_cone(cone: float | None, inner: float | None) -> None:
     session = session_of(AIMED.replace(inner_angle=25.0))
     put_light(session, "key", {"cone_angle": cone})
-    light = session.scene.light("key")
+    light = session.scene.lights["key"]
     assert (light.cone_angle, light.inner_angle) == (cone, inner)

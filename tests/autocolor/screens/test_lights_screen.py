@@ -29,7 +29,7 @@ def hand(tmp_path: Path) -> Hand:
 
 
 def light_of(hand: Hand, name: str = "key") -> Light:
-    return hand.scene.light(name)
+    return hand.scene.lights[name]
 
 
 LEFT = HalfSpace("left", (0.3, 0.0, 0.0), (1.0, 0.0, 0.2))
@@ -69,7 +69,7 @@ def test_clicks_set_a_parameter_alone(cut_hand: Hand, case: str) -> None:
     hand, before = cut_hand, cut_hand.scene
     for label, share in clicks:
         hand.pick(label, share)
-    assert light_of(hand) == before.with_light("key", **changes).light("key")
+    assert light_of(hand) == before.with_light("key", **changes).lights["key"]
     assert words_are_those_of_the_scene(hand)
     for _ in clicks:
         undo(hand)
@@ -195,7 +195,7 @@ PLACES = [(300, 300), (340, 330), (320, 200)]
 
 
 def planes_of(hand: Hand) -> tuple[HalfSpace, ...]:
-    return hand.scene.light("key").half_spaces
+    return hand.scene.lights["key"].half_spaces
 
 
 def pick_points(hand: Hand, places: list[tuple[int, int]] = PLACES) -> None:
@@ -347,7 +347,7 @@ def test_the_list_shows_and_sets_every_light(hand: Hand) -> None:
     assert row_of(hand, "fill").is_chosen
     assert hand.scene is before
     click_at(hand, "fill", "box")
-    assert light_of(hand, "fill") == before.light("fill").replace(on=False)
+    assert light_of(hand, "fill") == before.lights["fill"].replace(on=False)
     click_at(hand, "key", "bar")
     assert light_of(hand).intensity not in (0, 1, 2)
     assert light_of(hand, "fill").intensity == 0.5
@@ -363,7 +363,7 @@ def test_a_drag_along_a_bar_of_the_list_is_one_step_and_other_drags_do_nothing(h
     line = area.top + 8
     starts = {part: area.left + share * (area.right - area.left) for part, share in PARTS.items()}
     hand.drag((starts["bar"], line), (starts["bar"] + 9, line), (area.right + 200, line + 90))
-    assert light_of(hand, "fill") == before.light("fill").replace(intensity=2.0)
+    assert light_of(hand, "fill") == before.lights["fill"].replace(intensity=2.0)
     undo(hand)
     assert hand.scene is before
     for part in ("name", "box", "solo"):

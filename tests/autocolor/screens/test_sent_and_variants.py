@@ -303,7 +303,7 @@ def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
     assert names(hand) == ["A", "C"]
     hand.click(PLACES[0].left + 20, PLACES[0].top + 20)
     hand.pick("come back")
-    assert hand.viewer.studio.scene.surface("low").paint.object_color == (0, 0, 128)
+    assert hand.viewer.studio.scene.surfaces["low"].paint.object_color == (0, 0, 128)
 
 
 def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -> None:

@@ -29,7 +29,7 @@ def test_a_rig_loses_links_to_absent_rows_and_says_so(tmp_path: Path) -> None:
     hand = hand_before(boxes(), tmp_path)
     hand.viewer.on_drop(tmp_path / "lamps.toml")
     assert [light.name for light in hand.scene.lights] == ["lamp"]
-    assert hand.scene.light("lamp").links == Links()
+    assert hand.scene.lights["lamp"].links == Links()
     assert hand.message == (
         "the lights of lamps.toml, fitted to boxes, without links to what it lacks; undo goes back"
     )
@@ -306,7 +306,7 @@ def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path, l
     hand.viewer.on_tick()
     assert hand.scene is before
     look(hand)
-    assert hand.scene.light("key").intensity == 3
+    assert hand.scene.lights["key"].intensity == 3
     # The mesh did not change, and nor do the visible points.
     assert hand.scene.mesh is before.mesh
     assert hand.message == "small.sqlite was changed elsewhere; undo goes back"
@@ -341,7 +341,7 @@ def test_with_unsaved_edits_the_user_is_asked_and_may_save_beside(store: Path, l
     assert hand.scene is mine
     assert hand.message == "small.sqlite was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
     hand.press("Ctrl+r")
-    assert hand.scene.light("key").intensity == 3
+    assert hand.scene.lights["key"].intensity == 3
     assert hand.message == "read again; undo goes back"
     hand.press("Ctrl+Z")
     assert hand.scene is mine
@@ -349,8 +349,8 @@ def test_with_unsaved_edits_the_user_is_asked_and_may_save_beside(store: Path, l
     look(hand)
     hand.press("Ctrl+s")
     assert "small.sqlite was changed since, and is left alone" in hand.message
-    assert read_scene(store).light("key").intensity == 4
-    assert read_scene(store.parent / "small").light("rim").intensity == 0.25
+    assert read_scene(store).lights["key"].intensity == 4
+    assert read_scene(store.parent / "small").lights["rim"].intensity == 0.25
 
 
 def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path, look: Look) -> None:
@@ -370,7 +370,7 @@ def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path,
     assert hand.message.startswith("saved")
     run(store, BRIGHTER)
     look(hand)
-    assert hand.scene.light("key").intensity == 3
+    assert hand.scene.lights["key"].intensity == 3
 
 
 def test_an_error_in_the_store_shows_a_message_once_and_the_scene_stays(store: Path, look: Look) -> None:

@@ -80,11 +80,11 @@ def turn(hand: Hand) -> None:
 
 
 def key(hand: Hand) -> Light:
-    return hand.scene.light("key")
+    return hand.scene.lights["key"]
 
 
 def paint(hand: Hand) -> Paint:
-    return hand.scene.surface("body").paint
+    return hand.scene.surfaces["body"].paint
 
 
 def all_differ(before: Sequence[float] | None, now: Sequence[float] | None) -> bool:
@@ -108,11 +108,11 @@ def is_split_elsewhere(hand: Hand) -> bool:
 TASKS: dict[str, tuple[Sequence[Act], Act]] = {
     "move a light": (
         [menu("light & view"), drag_handle("key: x", 0, 40, -30), drag_handle("key: x", 1, 0, -40)],
-        lambda hand: all_differ(coupe().light("key").position, key(hand).position),
+        lambda hand: all_differ(coupe().lights["key"].position, key(hand).position),
     ),
     "aim a light": (
         [menu("light & view"), drag_handle("key: aim", 0, 12, -12), drag_handle("key: aim", 1, 12, -12)],
-        lambda hand: all_differ(coupe().light("key").aim, key(hand).aim),
+        lambda hand: all_differ(coupe().lights["key"].aim, key(hand).aim),
     ),
     "set a flap": (
         [menu("lights"), pick("flaps z", BOX), pick("z minimum", BOX)],
@@ -126,7 +126,7 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
         [menu("lights"), pull("intensity", 0.5, 0.8), pull("concentration", 0.2, 0.4)],
         lambda hand: key(hand).intensity > 1.2 and key(hand).concentration > 20,
     ),
-    "switch a light": ([menu("side", BOX)], lambda hand: not hand.scene.light("side").on),
+    "switch a light": ([menu("side", BOX)], lambda hand: not hand.scene.lights["side"].on),
     "choose any paint": (
         [menu("color mixing"), pick("paints", 0.7)],
         lambda hand: paint(hand).object_color in set(map(tuple, swatches().tolist())),
@@ -284,7 +284,7 @@ def test_the_panel_is_folded_to_its_first_line_until_the_next_lesson(hand: Hand,
 
 
 CAR = car()
-BODY = CAR.surface("body")
+BODY = CAR.surfaces["body"]
 
 DONE: dict[str, Scene] = {
     "move a light": CAR.with_light("fill", position=(1, 2, 3)),

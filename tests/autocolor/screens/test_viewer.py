@@ -43,7 +43,7 @@ def distance(scene: Scene) -> float:
 
 
 def paint_of(hand: Hand, name: str = "low") -> tuple[int, int, int]:
-    return hand.scene.surface(name).paint.object_color
+    return hand.scene.surfaces[name].paint.object_color
 
 
 # Keys.
@@ -82,11 +82,11 @@ EDITS: dict[str, Callable[[Scene], object]] = {
     "r": lambda scene: scene.view == framed(box_scene().view, cube().coordinates),
     "1": lambda scene: [light.on for light in scene.lights] == [False, True],
     "2": lambda scene: [light.on for light in scene.lights] == [True, False],
-    "[": lambda scene: scene.surface("low").paint.blend == pytest.approx(0.55),
-    "]": lambda scene: scene.surface("low").paint.blend == pytest.approx(0.65),
+    "[": lambda scene: scene.surfaces["low"].paint.blend == pytest.approx(0.55),
+    "]": lambda scene: scene.surfaces["low"].paint.blend == pytest.approx(0.65),
     "e": lambda scene: scene.exposure != box_scene().exposure,
-    "c": lambda scene: scene.surface("low").paint != box_scene().surface("low").paint,
-    "Shift+c": lambda scene: scene.surface("low").paint != box_scene().surface("low").paint,
+    "c": lambda scene: scene.surfaces["low"].paint != box_scene().surfaces["low"].paint,
+    "Shift+c": lambda scene: scene.surfaces["low"].paint != box_scene().surfaces["low"].paint,
 }
 
 

@@ -220,12 +220,12 @@ def test_saved_values_are_a_table_of_variants(
     (tmp_path / "values.csv").write_bytes(saved(page, "Save CSV"))
     (variant,) = autocolor.read_variants(tmp_path / "values.csv")
     found = scene_with(scene, variant.settings)
-    assert found.surface("body").paint == coupe.surface("body").paint.replace(
+    assert found.surfaces["body"].paint == coupe.surfaces["body"].paint.replace(
         object_color="#1f3f8f", blend=0.25
     )
-    assert found.surface("glass").paint == scene.surface("glass").paint
-    assert found.surface("trim").paint.ramp is None
-    assert found.surface("floor").paint == Paint(ramp=((16, 32, 48), (64, 80, 96)))
+    assert found.surfaces["glass"].paint == scene.surfaces["glass"].paint
+    assert found.surfaces["trim"].paint.ramp is None
+    assert found.surfaces["floor"].paint == Paint(ramp=((16, 32, 48), (64, 80, 96)))
     assert page.evaluate(SHOWN) == digest(image(found, small, smooth=1))
     png = np.asarray(Image.open(io.BytesIO(saved(page, "Save PNG"))).convert("RGB"))
     assert (png == image(found, small)).all()
@@ -334,7 +334,7 @@ def test_the_keyboard_alone_recolors(opened: Open, coupe: autocolor.Scene, small
     page.keyboard.press("Control+z")
     assert blend.input_value() == "0.45"
     page.keyboard.press("End")
-    paint = coupe.surface("glass").paint.replace(object_color="navy", blend=1.0)
+    paint = coupe.surfaces["glass"].paint.replace(object_color="navy", blend=1.0)
     shown = coupe.with_surface("glass", paint=paint)
     assert page.evaluate(SHOWN) == digest(image(shown, small, smooth=1))
 

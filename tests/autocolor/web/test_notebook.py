@@ -215,7 +215,7 @@ def test_a_drag_is_one_step_and_never_joins_a_step_that_is_not_its_own(meanwhile
     studio, _ = opened()
     _, cell = shown_in(studio)
     cell.say({"edit": {"surfaces.glass.blend": 0.1}, "same_step": False})
-    begun = f"#{bytes(studio.scene.surface('body').paint.object_color).hex()}"
+    begun = f"#{bytes(studio.scene.surfaces['body'].paint.object_color).hex()}"
     cell.say({"edit": {OBJECT_COLOR: begun if meanwhile == "nothing" else "#100000"}, "same_step": False})
     if meanwhile == "recolor":
         studio.recolor("glass", blend=0.9)
@@ -497,19 +497,19 @@ def test_a_browser_shows_every_step_and_its_edits_are_steps_of_the_studio(window
     field.fill("#204080")
     field.press("Enter")
     shown.check()
-    assert studio.scene.surface("body").paint.object_color == (0x20, 0x40, 0x80)
+    assert studio.scene.surfaces["body"].paint.object_color == (0x20, 0x40, 0x80)
     assert cell.arrived == [{"picture", "entries"}]
     # An edit in Python, and another in the browser by a key.
     studio.recolor("glass", object_color="#ff0000")
     shown.check()
     page.get_by_role("slider", name="Strength of light key").press("Home")
     shown.check()
-    assert studio.scene.light("key").intensity == 0
+    assert studio.scene.lights["key"].intensity == 0
     assert cell.arrived[-1] == {"picture", "words"}
     shown.wait_for_status("bytes of words")
     page.get_by_role("switch", name="fill").press("Space")
     shown.check()
-    assert not studio.scene.light("fill").on
+    assert not studio.scene.lights["fill"].on
     # Undo and redo, in the browser and in Python.
     for name in ("Undo", "Undo", "Undo", "Undo", "Redo"):
         page.get_by_role("button", name=name, disabled=False).click()
@@ -539,13 +539,13 @@ def test_a_drag_in_a_browser_sends_as_fast_as_the_studio_answers_and_is_one_step
     assert red.get_attribute("data-lm-suppress-shortcuts") == "true"
     # The first edit is answered, while the browser already shows the last.
     assert shown.carry() == (1, 2)
-    assert studio.scene.surface("body").paint.object_color[0] == 60
+    assert studio.scene.surfaces["body"].paint.object_color[0] == 60
     red.dispatch_event("change", {"bubbles": True})
     assert red.input_value() == "89"
     # One edit stands for all that came before the answer.
     assert shown.carry() == (1, 2)
     assert shown.carry() == (0, 0)
-    assert studio.scene.surface("body").paint.object_color[0] == 89
+    assert studio.scene.surfaces["body"].paint.object_color[0] == 89
     assert len(studio.history.to_undo) == 1
     shown.check()
 
@@ -592,7 +592,7 @@ def test_an_edit_that_the_studio_refuses_is_told_in_the_browser_and_taken_back(
     assert studio.history.to_undo == ()
     shown.page.get_by_role("slider", name="Blend").press("Home")
     shown.check()
-    assert studio.scene.surface("body").paint.blend == 0
+    assert studio.scene.surfaces["body"].paint.blend == 0
 
 
 @IN_A_BROWSER

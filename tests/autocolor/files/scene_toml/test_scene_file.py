@@ -151,6 +151,6 @@ def test_surfaces_come_from_the_file_and_then_from_the_materials_of_the_mesh(
     scene = read(folder, MESH + tables, surfaces=surfaces).scene
     assert [part.surface for part in scene.parts] == names
     if "red" in names:
-        red = scene.surface("red")
+        red = scene.surfaces["red"]
         assert red.paint.object_color == ((16, 32, 48) if "surfaces.red" in tables else (255, 0, 0))
         assert (red.reflectance == Reflectance()) == ("surfaces.red" in tables)

@@ -23,10 +23,11 @@ def test_rows_and_columns_that_a_scene_file_may_lack_a_store_may_lack(tmp_path: 
     scene = read_store(path).scene
     expected = small_scene().with_new_light("fill", position=(1, 2, 3))
     assert scene.lights == expected.with_light("rim", flaps={"z": {"maximum": 0.5}}).lights
-    assert scene.surface("metal").reflectance.model.roughness == 0.2  # type: ignore[attr-defined]
-    assert scene.surface("glass") == expected.with_surface(
-        "glass", fresnel_curve=[(0, 0.04), (90, 1)]
-    ).surface("glass")
+    assert scene.surfaces["metal"].reflectance.model.roughness == 0.2  # type: ignore[attr-defined]
+    assert (
+        scene.surfaces["glass"]
+        == expected.with_surface("glass", fresnel_curve=[(0, 0.04), (90, 1)]).surfaces["glass"]
+    )
 
 
 def test_tables_that_are_missing_are_created_and_told(tmp_path: Path) -> None:

@@ -43,9 +43,9 @@ def test_a_mesh_file_is_opened_by_its_up_axis_and_scale(tmp_path: Path) -> None:
 def test_a_row_is_changed_by_its_key_and_saved_at_once(tmp_path: Path, tables: Tables) -> None:
     tables.update("lights", "key", intensity=2.5, on=False)
     tables.update("nodes", 5, z=3.0)
-    assert tables.scene().light("key").intensity == 2.5
+    assert tables.scene().lights["key"].intensity == 2.5
     scene = read_scene(tmp_path / "small.sqlite")
-    assert (scene.light("key").intensity, scene.light("key").on) == (2.5, False)
+    assert (scene.lights["key"].intensity, scene.lights["key"].on) == (2.5, False)
     assert scene.mesh.coordinates[4, 2] == 3.0
 
 
@@ -82,7 +82,7 @@ def test_what_is_renamed_is_renamed_where_it_is_referred_to(tables: Tables) -> N
     tables.update("parts", "hood", name="bonnet")
     tables.update("mesh_scalars", "stress", name="strain")
     scene = tables.scene()
-    assert scene.part("bonnet").surface == "paint"
+    assert scene.parts["bonnet"].surface == "paint"
     assert scene.mesh.part_names == ("bonnet", "roof")
     assert scene.mesh.scalars[0].values.tolist()[:2] == [1, 2]
 

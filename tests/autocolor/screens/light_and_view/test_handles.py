@@ -26,7 +26,7 @@ PLACE = (1.5, -2.0, 3.0)
 def test_a_direction_points_to_where_its_end_is_put() -> None:
     light = Light("spot", (1.0, 2.0, 3.0), direction=(0.0, 0.0, -1.0))
     movable = MovablePoint(DIRECTION, light="spot")
-    after = movable.put(boxed(light), (4.0, 2.0, 7.0)).light("spot")
+    after = movable.put(boxed(light), (4.0, 2.0, 7.0)).lights["spot"]
     assert after.position == light.position
     assert after.axis == pytest.approx((0.6, 0.0, 0.8))
     end = movable.point_in(boxed(after), VIEWS)
@@ -102,11 +102,11 @@ def test_the_line_of_a_flap_of_the_chosen_light_can_be_taken_hold_of_anywhere() 
 def test_a_light_that_follows_is_taken_hold_of_and_put_where_it_is_in_the_world(follows: str) -> None:
     spot = Light("spot", (0.5, 1.0, -0.5), direction=(0.0, 1.0, 0.0), follows=follows)
     scene = boxed(KEY, spot)
-    assert MovablePoint(LIGHT, light="spot").point_in(scene, VIEWS) == scene.light_in_world("spot").position
+    assert MovablePoint(LIGHT, light="spot").point_in(scene, VIEWS) == scene.lights_in_world["spot"].position
     moved = MovablePoint(LIGHT, light="spot").put(scene, PLACE)
     assert MovablePoint(LIGHT, light="spot").point_in(moved, VIEWS) == pytest.approx(PLACE)
-    assert moved.light("spot").follows == follows
-    turned = MovablePoint(DIRECTION, light="spot").put(moved, (1.5, -2.0, 8.0)).light_in_world("spot")
+    assert moved.lights["spot"].follows == follows
+    turned = MovablePoint(DIRECTION, light="spot").put(moved, (1.5, -2.0, 8.0)).lights_in_world["spot"]
     assert turned.axis == pytest.approx((0.0, 0.0, 1.0), abs=1e-12)
-    aimed = MovablePoint(AIM, light="spot").put(moved, (0.0, 1.0, 2.0)).light_in_world("spot")
+    aimed = MovablePoint(AIM, light="spot").put(moved, (0.0, 1.0, 2.0)).lights_in_world["spot"]
     assert aimed.aim == pytest.approx((0.0, 1.0, 2.0))

@@ -44,7 +44,7 @@ MIDDLE = round(PICTURE_AREA.middle[0]), round(PICTURE_AREA.middle[1])
 
 def where(hand: Hand, side: ViewSide, light: str = "key") -> tuple[float, float]:
     """Where a light is in one of the views, now."""
-    return screen_of(hand).views.position(side, hand.scene.light_in_world(light).position)
+    return screen_of(hand).views.position(side, hand.scene.lights_in_world[light].position)
 
 
 @pytest.mark.parametrize("what", [EYE, TARGET, LIGHT, AIM])
@@ -75,13 +75,13 @@ def test_a_light_is_moved_by_two_picks_in_each_of_two_views_as_in_the_paper() ->
     assert hand.message == "fill: x -3  y -3  z 1: pick its new place"
     assert hand.scene is before
     hand.click(200, 60)
-    after = hand.scene.light("fill").position
+    after = hand.scene.lights["fill"].position
     assert after[2] == 1.0
     assert where(hand, TOP, "fill") == pytest.approx((200, 60), abs=0.6)
     assert hand.message.startswith("fill: x ")
     hand.click(*place_of(hand, MovablePoint(LIGHT, "side", "fill")))
     hand.click(300, 250)
-    assert hand.scene.light("fill").position[0] == after[0]
+    assert hand.scene.lights["fill"].position[0] == after[0]
     assert where(hand, SIDE, "fill") == pytest.approx((300, 250), abs=0.6)
     assert hand.viewer.studio.undo()
     assert is_undone_at_once(hand, before)
@@ -182,7 +182,7 @@ def test_an_end_of_a_flap_is_dragged_as_far_as_the_other(end: str, low: float, h
     before = hand.scene
     element, line = place_of(hand, MovablePoint(FLAP, "front", "key", "z", end))
     hand.drag((element, line), (element, line + 3), (element, 240 if end == "minimum" else 450))
-    assert hand.scene.light("key").flaps.z == Flap(low, high)
+    assert hand.scene.lights["key"].flaps.z == Flap(low, high)
     assert hand.message == f"key: flap z, {end} {low:g}"
     assert is_undone_at_once(hand, before)
 
@@ -192,7 +192,7 @@ def test_the_switch_of_a_flap_keeps_its_ends() -> None:
     for is_on, hint in ((False, "off"), (True, "on")):
         assert hand.widget("key: flap z, maximum, side").help == f"Switch flap z of key {hint}."
         hand.pick("key: flap z, maximum, side", 0.5)
-        assert hand.scene.light("key").flaps.z == Flap(0.1, 0.9, on=is_on)
+        assert hand.scene.lights["key"].flaps.z == Flap(0.1, 0.9, on=is_on)
 
 
 def test_dragging_beside_everything_moves_the_views_together_and_no_edit_is_made() -> None:
@@ -398,7 +398,7 @@ def test_each_light_has_a_row_whose_box_switches_it_and_whose_rest_chooses_it() 
     assert hand.scene is before
     hand.pick("1 key", 0.95)
     assert state() == [(False, False), (False, True)]
-    assert not hand.scene.light("key").on
+    assert not hand.scene.lights["key"].on
 
 
 def test_the_chosen_light_has_rows_of_its_parameters_and_the_eye_has_none() -> None:
@@ -460,7 +460,7 @@ def test_a_drag_of_a_numeral_moves_its_point_as_far_as_the_pointer(coupe: Hand) 
         element, line = handle.sign.left + 3, handle.sign.top + 4
         coupe.drag((element, line), (element + 9, line - 7), (element + 20, line - 15))
         scene = coupe.scene
-        at = screen_of(coupe).views.position(SIDE, scene.light_in_world(light).aim or (0, 0, 0))
+        at = screen_of(coupe).views.position(SIDE, scene.lights_in_world[light].aim or (0, 0, 0))
         assert (round(at[0]), round(at[1])) == (handle.element + 20, handle.line - 15)
         moved = [one.name for one, other in zip(scene.lights, before.lights, strict=True) if one != other]
         assert moved == [light]

@@ -84,7 +84,7 @@ def test_older_and_newer_steps_are_reached(tmp_path: Path) -> None:
         seen |= {row.label for row in rows_of(hand)}
     assert seen == {f"step {number}" for number in range(steps + 1)}
     hand.pick("step 2")
-    assert hand.scene.light("fill").intensity == 0.52
+    assert hand.scene.lights["fill"].intensity == 0.52
     # The list stays where the user clicked.
     assert rows_of(hand)[2].is_chosen
     for _ in range(5):

@@ -39,7 +39,7 @@ def at_lights(hand: Hand) -> Hand:
 
 
 def key(hand: Hand) -> Light:
-    return hand.scene.light("key")
+    return hand.scene.lights["key"]
 
 
 def undo(hand: Hand) -> None:
@@ -87,7 +87,7 @@ def test_a_dragged_highlight_follows_in_one_step(at_lights: Hand) -> None:
     assert hand.handle("highlight of key") == PLACE
     # Where it comes from does not matter but for the distance, which each place keeps.
     seen = studio.seen_at(*PLACE[::-1])
-    assert key(hand).aim == highlight_placed(before, seen, "key").light("key").aim
+    assert key(hand).aim == highlight_placed(before, seen, "key").lights["key"].aim
     undo(hand)
     assert hand.scene is before
     assert hand.handle("highlight of key") == start
@@ -155,7 +155,7 @@ def test_a_cone_is_dragged_by_its_rim_to_where_it_is_to_end(at_lights: Hand) -> 
     hand, before = at_lights, at_lights.scene
     hand.drag(hand.handle("end of the cone of key"), (300, 230), PLACE)
     seen = hand.viewer.studio.seen_at(*PLACE[::-1])
-    assert key(hand) == cone_placed(before, seen, "key").light("key")
+    assert key(hand) == cone_placed(before, seen, "key").lights["key"]
     assert hand.message == f"key: cone angle {key(hand).cone_angle:.1f} degrees"
     assert near_rim(hand, "cone", PLACE)
     assert len(hand.viewer.studio.history.to_undo) == 1
@@ -335,7 +335,7 @@ def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_i
         assert studio.highlight_of("key") == place[::-1]
         assert hand.handle("highlight of key") == place
         assert (key(hand).follows, key(hand).at_infinity) == ("eye", True)
-    position = zip("xyz", hand.scene.light_in_world("key").position, strict=True)
+    position = zip("xyz", hand.scene.lights_in_world["key"].position, strict=True)
     assert hand.message == "key: " + "  ".join(f"{axis} {place:.2f}" for axis, place in position)
     # Its cross is where the highlight is seen after it was turned in place.
     hand.viewer.studio.light("key", direction=(0.1, 1.0, 0.0))

@@ -201,7 +201,7 @@ def color_seen(hand: Hand, element: int, line: int) -> tuple[int, ...]:
 
 
 def paint_of(hand: Hand, surface: str) -> Paint:
-    return hand.scene.surface(surface).paint
+    return hand.scene.surfaces[surface].paint
 
 
 def test_a_key_takes_the_paint_under_the_pointer_for_the_chosen_surface(hand: Hand) -> None:

@@ -89,7 +89,7 @@ def test_the_other_handle_is_the_percentage_of_the_light_color(hand: PaintingHan
     assert tuple(hand.display.entries[first + levels - 1]) == hand.paint.light_color
     hand.click(area.left + 2, (area.top + area.bottom) // 2)
     assert hand.paint.light_percentage == 50
-    assert hand.paint.blend == boxes_scene().surface("box 0").paint.blend
+    assert hand.paint.blend == boxes_scene().surfaces["box 0"].paint.blend
 
 
 def test_the_bar_makes_room_for_the_menu(hand: PaintingHand) -> None:

@@ -55,9 +55,9 @@ def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
 
 def test_a_finish_keeps_the_object_color(hand: PaintingHand) -> None:
     for name in FINISHES:
-        before = hand.scene.surface("box 0")
+        before = hand.scene.surfaces["box 0"]
         hand.pick(name)
-        assert hand.scene.surface("box 0") == before.replace(**finished(before, name))
+        assert hand.scene.surfaces["box 0"] == before.replace(**finished(before, name))
         assert shades_are_right(hand)
         assert bar_is_right(hand)
 

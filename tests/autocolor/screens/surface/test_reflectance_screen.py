@@ -27,7 +27,7 @@ def hand(tmp_path: Path) -> Hand:
 
 
 def surface_of(hand: Hand, name: str = "low") -> Surface:
-    return hand.scene.surface(name)
+    return hand.scene.surfaces[name]
 
 
 @pytest.mark.parametrize("label", NUMBERS)
@@ -37,9 +37,9 @@ def test_a_drag_along_a_number_sets_it_alone_and_is_one_step(hand: Hand, label: 
     row = hand.widget(label)
     assert isinstance(row, Bar)
     assert NUMBERS[label](surface_of(hand)) == row.value
-    start, now = before.surface("low"), surface_of(hand)
+    start, now = before.surfaces["low"], surface_of(hand)
     assert [name for name, get in NUMBERS.items() if get(start) != get(now)] == [label]
-    assert surface_of(hand, "high") is before.surface("high")
+    assert surface_of(hand, "high") is before.surfaces["high"]
     assert words_are_those_of_the_scene(hand)
     undo(hand)
     assert hand.scene is before
