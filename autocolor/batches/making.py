@@ -474,8 +474,8 @@ def batch(
     `table` is a CSV file for the results. Both are also written if the batch is stopped. `progress` is called
     with each result.
 
-    A variant that cannot be made has a `problem` in its result, is told by a VariantWarning, and loses no
-    other. Raises UsageError for a wrong argument, a key that the scene does not have, and arrays that exceed
+    A variant that cannot be made has a `problem` in its result and issues a VariantWarning; all others are
+    made. Raises UsageError for a wrong argument, a key that the scene does not have, and arrays that exceed
     the memory budget; InputError for an invalid source, and if no variant can be made; OutputError if a file
     exists; WriteError if a file cannot be written; UnavailableError if the executor fails.
     """

@@ -194,7 +194,9 @@ def place_named(rows: Sequence[Row], name: str) -> int:
     names = [vars(row)["name"] for row in rows]
     if name in names:
         return names.index(name)
-    raise UsageError(f"there is no {rows[0].noun if rows else 'row'} {shown(name)}{nearest(name, names)}")
+    if not rows:
+        raise UsageError(f"there is no row {shown(name)}, because the table has no rows; add one")
+    raise UsageError(f"there is no {rows[0].noun} {shown(name)}{nearest(name, names)}")
 
 
 @dataclass(frozen=True)

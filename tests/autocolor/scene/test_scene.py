@@ -333,7 +333,7 @@ def test_a_row_is_found_by_number_or_by_name_after_every_edit() -> None:
     assert lights == tuple(lights)
     assert hash(lights) == hash(tuple(lights))
     assert type(lights[:1]) is tuple
-    assert lights[0] is lights["key"] is scene.lights["key"]
+    assert lights[0] is lights["key"]
     unknown: object = "keys"
     assert unknown not in lights
 
@@ -342,8 +342,10 @@ test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = ref
     lambda ask: ask(car_scene()),
     [
         (lambda scene: scene.lights["keys"], "there is no light 'keys'; did you mean 'key'?"),
-        (lambda scene: scene.lights["keys"], "there is no light 'keys'; did you mean 'key'?"),
-        (lambda scene: scene.replace(lights=()).lights["key"], "there is no row 'key'"),
+        (
+            lambda scene: scene.replace(lights=()).lights["key"],
+            "there is no row 'key', because the table has no rows; add one",
+        ),
         (lambda scene: scene.surfaces["dor"], "there is no surface 'dor'; did you mean 'door'?"),
         (lambda scene: scene.parts["x"], "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
