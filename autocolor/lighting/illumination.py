@@ -137,6 +137,7 @@ def _plane_update(
         return LightPlanes(old.values.copy(), weights), changed, True
     if old.weights != weights:
         return LightPlanes(old.values, weights), changed, True
-    # This light stays while another light is edited: keep its mix for further edits.
-    mixed = np.empty(count, np.float32) if old.mixed is None else old.mixed
-    return LightPlanes(old.values, weights, mixed), changed, old.mixed is None
+    if old.mixed is None:
+        # This light stays while another light is edited: keep its mix for further edits.
+        return LightPlanes(old.values, weights, np.empty(count, np.float32)), changed, True
+    return old, changed, False
