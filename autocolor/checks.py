@@ -117,7 +117,7 @@ FUNCTIONS: Final = {
     "show": ("view",),
     "write": ("write_scene", "write_picture"),
 }
-"""The functions of autocolor for words of other programs, and for methods that their values do not have."""
+"""The functions of autocolor for words of other programs, and for methods that no scene or picture has."""
 
 
 def nearest(name: object, names: Iterable[object]) -> str:
@@ -135,9 +135,9 @@ def nearest(name: object, names: Iterable[object]) -> str:
 def closest(name: object, names: Iterable[str]) -> str:
     """The end of a message about an unknown name: the closest of `names`; empty if none is close.
 
-    The order of preference: our name for another program's word; a name that differs in capitals only; a name
-    that begins with the given name; a name with the given name between underscores or periods; the most
-    similar spelling among the first MOST_COMPARED names.
+    The order of preference: our name for another program's word; a name that differs in capitals only; the
+    shortest name that begins with the given name; a name with the given name between underscores or periods;
+    the most similar spelling among the first MOST_COMPARED names.
 
     >>> closest("color", ["blend", "object_color"]), closest("N", ["exponent"])
     ("; did you mean 'object_color'?", "; did you mean 'exponent'?")
@@ -148,7 +148,7 @@ def closest(name: object, names: Iterable[str]) -> str:
     close = (
         [text for text in texts if text == other]
         or [text for text in texts if text.casefold() == name.casefold()]
-        or [text for text in texts if text.startswith(name)]
+        or sorted((text for text in texts if text.startswith(name)), key=len)
         or [text for text in texts if name in text.replace(".", "_").split("_")]
         or difflib.get_close_matches(name, texts[:MOST_COMPARED], n=1)
     )

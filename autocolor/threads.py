@@ -38,7 +38,7 @@ def alone(method: Method) -> Method:
 
 
 def for_one_thread(cls: SomeClass) -> SomeClass:
-    """The class, with each of its public methods `alone`. Its properties can be read at any time."""
+    """The class, with each of its public methods `alone`."""
     for name, method in list(vars(cls).items()):
         if isinstance(method, FunctionType) and not name.startswith("_"):
             setattr(cls, name, alone(method))

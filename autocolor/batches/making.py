@@ -89,7 +89,8 @@ class VariantWarning(UserWarning):
 class Drawing(NamedTuple):
     """How the pictures of a batch are drawn: `smooth` times the lines and elements are rendered.
 
-    All but the thumbnail, the size of thumbnails for a sheet, and the limit of memory determine a file.
+    All fields but `thumbnail`, the size of thumbnails for a sheet, and `limit`, that of memory, determine a
+    file.
     """
 
     lines: int
@@ -334,7 +335,7 @@ def _made_by(
 
 def _make_folder(path: str | PathLike[str]) -> None:
     """Make the folder of a file if it is missing; if it cannot be made, writing the file says why."""
-    with suppress(OSError):
+    with suppress(OSError, ValueError):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
 
 

@@ -2,7 +2,8 @@
 
 A mark is a checksum of the scene and the settings. It is at the end of a file, with a checksum of the bytes
 before it. A file with the mark of a variant, whose bytes are those that were written, need not be made again.
-A file with any other byte is made again.
+A file with any other byte is made again. A file without a mark, such as the first half of a picture, could
+be a file of another program, and is not replaced.
 """
 
 from __future__ import annotations
@@ -371,8 +372,8 @@ ALL_LEVELS: Final = np.arange(256, dtype=np.uint8)
 def thumbnail(colors: Bytes, box: Box) -> Bytes:
     """The colors, averaged as light over the smallest squares for which they fit in a box, uint8.
 
-    Lines and elements that fill no square are left out at the lower right, and what a very narrow picture has
-    outside of the box. Measured: 4.5 ms for 640 x 480.
+    Lines and elements at the lower right that fill no square are left out. A very narrow picture is cut at
+    the box. Measured: 4.5 ms for 640 x 480.
     """
     side = max(1, -(-colors.shape[0] // box.lines), -(-colors.shape[1] // box.elements))
     side = min(side, *colors.shape[:2])

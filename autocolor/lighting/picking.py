@@ -242,10 +242,10 @@ def _are_on_one_surface(points: VisiblePoints, one: Indices, other: Indices) -> 
 
 
 def cone_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
-    """The scene with a light, which has a cone, whose cone ends at a point: its angle is that point's L.
+    """The scene in which the cone of a light ends at a visible point: the cone angle is L of the point.
 
-    The angle is at least LEAST_CONE and at most 180 degrees. The inner angle stays, but it is at most the
-    cone angle. Raises UsageError on the background.
+    The light must have a cone. The angle is at least LEAST_CONE and at most 180 degrees. The inner angle
+    stays, but it is at most the cone angle. Raises UsageError on the background.
     """
     seen = _on_surface(seen, "a cone")
     row = scene.lights_in_world[light]
@@ -279,7 +279,7 @@ def flap_placed(scene: Scene, seen: Seen | None, light: str, axis: Axis, end: Fl
 def half_space_placed(scene: Scene, seen: Seen | None, light: str, name: str) -> Scene:
     """The scene with a light whose half-space ends at a visible point: its plane moves along its direction.
 
-    The half-space, which the light has, moves its own point by the least distance. Raises UsageError on the
+    The light must have this half-space, whose own point moves by the least distance. Raises UsageError on the
     background.
     """
     seen = _on_surface(seen, "a half-space")

@@ -1,6 +1,6 @@
 """The two planes of a light: what its light is at each visible point, but for D, S and its intensity.
 
-Paper: "The Lighting Model". The equation of `light` is computed as
+Paper: "The Lighting Model". The equation of `light` is computed in two planes.
 
     light(j) = (intensity(j) D) x diffuse plane + (intensity(j) S) x specular plane
     diffuse plane = controls(j) cos(I)

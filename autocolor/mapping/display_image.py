@@ -25,6 +25,7 @@ from autocolor.mapping.colors import entries_of
 from autocolor.mapping.intensity import ranges_of, words_of
 from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.scene.columns import Tier
+from autocolor.scene.row_kinds import place_named
 from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_points import SurfaceSlice
@@ -71,7 +72,7 @@ class DisplayImage(ABC):
     def range_of(self, name: str) -> LevelRange:
         """The range of a surface. Raises UsageError for an unknown surface, and for a surface of no part."""
         if name not in self.ranges:
-            surface = self.scene.surfaces[name]
+            surface = self.scene.surfaces[place_named(self.scene.surfaces, name)]
             raise UsageError(
                 f"surface {surface.name!r} has no levels, because no part has it{nearest(name, self.ranges)}"
             )

@@ -145,7 +145,7 @@ def holes_of(coordinates: Floats, borders: Indices) -> list[Hole]:
     order = np.argsort(groups, kind="stable")
     firsts = np.flatnonzero(np.diff(groups[order], prepend=-1))
     places = coordinates[nodes]
-    low, high = (least.reduceat(places[order], firsts) for least in (np.minimum, np.maximum))
+    low, high = (extreme.reduceat(places[order], firsts) for extreme in (np.minimum, np.maximum))
     # At each node of a closed loop two edges meet.
     is_open = np.logical_or.reduceat((np.bincount(ends.ravel()) != 2)[order], firsts)
     group = groups[ends[:, 0]]

@@ -179,7 +179,9 @@ class TableRows(tuple[RowOfTable, ...]):
     @overload
     def __getitem__(self, key: slice) -> tuple[RowOfTable, ...]: ...
     def __getitem__(self, key: SupportsIndex | slice | str) -> RowOfTable | tuple[RowOfTable, ...]:
-        return super().__getitem__(place_named(self, key) if isinstance(key, str) else key)
+        if isinstance(key, (int, slice, SupportsIndex)):
+            return super().__getitem__(key)
+        return super().__getitem__(place_named(self, key))
 
     def __contains__(self, key: object) -> bool:
         return (
@@ -189,13 +191,16 @@ class TableRows(tuple[RowOfTable, ...]):
         )
 
 
-def place_named(rows: Sequence[Row], name: str) -> int:
-    """The index of the row of that name. Raises UsageError, with the closest name, if no row has it."""
+def place_named(rows: Sequence[Row], name: str, noun: str = "row") -> int:
+    """The index of the row of that name. Raises UsageError, with the closest name, if no row has it.
+
+    `noun` is that of a table without rows.
+    """
     names = [vars(row)["name"] for row in rows]
     if name in names:
         return names.index(name)
     if not rows:
-        raise UsageError(f"there is no row {shown(name)}, because the table has no rows; add one")
+        raise UsageError(f"there is no {noun} {shown(name)}; the table has no rows")
     raise UsageError(f"there is no {rows[0].noun} {shown(name)}{nearest(name, names)}")
 
 

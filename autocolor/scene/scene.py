@@ -295,11 +295,11 @@ class Scene(Row):
 
     def with_light(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of a light changed."""
-        return self._with_row("lights", place_named(self.lights, name), changes)
+        return self._with_row("lights", place_named(self.lights, name, "light"), changes)
 
     def with_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> Scene:
         """The scene with some fields of a surface changed, also fields of its reflectance and its paint."""
-        return self._with_row("surfaces", place_named(self.surfaces, name), changes)
+        return self._with_row("surfaces", place_named(self.surfaces, name, "surface"), changes)
 
     def with_paint(self, name: str, /, *colors: NoReturn, **changes: Unpack[PaintChanges]) -> Scene:
         """The scene with some fields of a surface's paint changed; the same scene if all values are equal."""
@@ -308,7 +308,7 @@ class Scene(Row):
                 f"a recoloring must name its fields, not give {shown(colors[0])} alone; write it as in"
                 f" recolor({name!r}, object_color={shown(colors[0])})"
             )
-        place = place_named(self.surfaces, name)
+        place = place_named(self.surfaces, name, "surface")
         surface = self.surfaces[place]
         try:
             paint = replaced(surface.paint, changes)
@@ -322,7 +322,7 @@ class Scene(Row):
 
     def with_part(self, name: str, /, **changes: Unpack[PartChanges]) -> Scene:
         """The scene with some fields of a part changed."""
-        return self._with_row("parts", place_named(self.parts, name), changes)
+        return self._with_row("parts", place_named(self.parts, name, "part"), changes)
 
     def with_view(self, /, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
@@ -330,7 +330,7 @@ class Scene(Row):
 
     def with_named_view(self, name: str, /, **changes: Unpack[NamedViewChanges]) -> Scene:
         """The scene with some fields of a named view changed; the view itself stays."""
-        return self._with_row("views", place_named(self.views, name), changes)
+        return self._with_row("views", place_named(self.views, name, "named view"), changes)
 
     def with_saved_view(self, name: str | None = None) -> Scene:
         """The scene with its view under a name: of a new named view at the end, or in place of an old one.
@@ -344,11 +344,11 @@ class Scene(Row):
 
     def with_taken_view(self, name: str) -> Scene:
         """The scene with a named view as its view. Raises UsageError if the named view does not exist."""
-        return with_values(self, {"view": self.views[name].view})
+        return with_values(self, {"view": self.views[place_named(self.views, name, "named view")].view})
 
     def without_named_view(self, name: str) -> Scene:
         """The scene without a named view. Raises UsageError if the named view does not exist."""
-        place = place_named(self.views, name)
+        place = place_named(self.views, name, "named view")
         return with_values(self, {"views": TableRows((*self.views[:place], *self.views[place + 1 :]))})
 
     def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
@@ -372,7 +372,7 @@ class Scene(Row):
 
         Raises UsageError if the light does not exist, InputError if another light follows it.
         """
-        place = place_named(self.lights, name)
+        place = place_named(self.lights, name, "light")
         if followers := followers_of(name, self.lights):
             first = repr(followers[0])
             raise InputError(

@@ -32,6 +32,7 @@ from __future__ import annotations
 
 import base64
 import dataclasses
+import weakref
 from collections.abc import Callable
 from functools import cache
 from importlib.resources import files
@@ -103,7 +104,8 @@ class WidgetPort:
 
     def __init__(self, studio: EditedStudio, display: HostPort) -> None:
         self.configuration = configuration_of(display)
-        self._studio = studio
+        # A strong reference would be a circle, and a studio that is dropped would stay in memory.
+        self._studio: EditedStudio = weakref.proxy(studio)
         self._display = display
         self._widgets: list[AnyWidget] = []
         self._copy: Ramtek9300 | None = None

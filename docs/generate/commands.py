@@ -119,7 +119,7 @@ installed:
 
 For `ramtek` it is `_RAMTEK_COMPLETE`, and `ramtek` at the end. The shell itself completes paths. Names, keys
 and values are those of the scene or the picture that stands on the line before them. A scene that is large or
-broken completes to nothing. bash parts a word at `=`, so it completes no value after a whole key; zsh and
+broken completes to nothing. bash splits a word at `=`, so it completes no value after a whole key; zsh and
 fish do.
 
 | typed, and Tab | candidates |

@@ -7,6 +7,7 @@ import itertools
 import pickle
 import re
 import warnings
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 from threading import Thread
@@ -963,3 +964,10 @@ def test_the_file_of_a_scene_is_read_again_by_one_step_to_undo(tmp_path: Path) -
     assert studio.scene.mesh is before.mesh
     studio.undo()
     assert studio.scene is before
+
+
+def test_a_studio_that_is_dropped_is_freed_at_once() -> None:
+    studio, _ = opened()
+    freed = weakref.ref(studio)
+    del studio
+    assert freed() is None

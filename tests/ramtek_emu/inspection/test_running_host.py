@@ -55,6 +55,9 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
         session.go_on()
         while len(host.replay.stream) < 3:
             session.tick()
+        # The last instruction is executed, and its reply may still wait to be sent.
+        while server.step():
+            pass
         assert port.receive(4).tolist() == [0, 0, 0, 0]
         port.wire.socket.close()
 
