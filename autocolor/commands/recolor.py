@@ -89,6 +89,7 @@ def recolor(
     bands of a scalar.
     """
     from autocolor.commands.settings import recolored
+    from autocolor.files.opening import is_picture
     from autocolor.files.paths import file_stem
     from autocolor.files.picture_file import read_picture, write_picture
     from autocolor.images import save_image
@@ -99,6 +100,11 @@ def recolor(
         raise UsageError(
             "recolor must have a SURFACE, or --set KEY=VALUE without colors; write it as in recolor PICTURE"
             " body --object navy"
+        )
+    if not is_picture(Path(picture)):
+        raise UsageError(
+            f"recolor must have a picture file, not {picture}; make one with `autocolor render SCENE --save"
+            " FILE.npz`"
         )
     if output is None and save is None:
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"

@@ -183,6 +183,12 @@ class TableRows(tuple[RowOfTable, ...]):
             return super().__getitem__(key)
         return super().__getitem__(place_named(self, key))
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            advice = f"; write it as [{name!r}]" if name in self else ""
+            raise AttributeError(f"a table of rows has no attribute {name!r}{advice}")
+
     def __contains__(self, key: object) -> bool:
         return (
             any(vars(row)["name"] == key for row in self)

@@ -350,7 +350,11 @@ test_a_name_that_is_not_in_its_table_is_refused_with_the_nearest_right_one = ref
             lambda scene: scene.replace(lights=()).with_light("key", on=False),
             "there is no light 'key'; the table has no rows",
         ),
-        (lambda scene: scene.lights[None], "there is no light None; choose 'key'"),
+        (lambda scene: scene.lights[None], "there is no light None; choose 'key', 'fill', 'top' or 'rim'"),
+        (
+            lambda scene: scene.only_lights(["kee"]),
+            "there is no light ['kee']; choose 'key', 'fill', 'top' or 'rim'",
+        ),
         (lambda scene: scene.surfaces["dor"], "there is no surface 'dor'; did you mean 'door'?"),
         (lambda scene: scene.parts["x"], "there is no part 'x'; choose 'door', 'hood' or 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
