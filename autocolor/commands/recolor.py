@@ -102,7 +102,7 @@ def recolor(
             " body --object navy"
         )
     if not is_picture(Path(picture)):
-        raise UsageError(
+        raise InputError(
             f"recolor must have a picture file, not {picture}; make one with `autocolor render SCENE --save"
             " FILE.npz`"
         )

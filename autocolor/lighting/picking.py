@@ -77,9 +77,9 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
 def _cosines(light: CameraLight, points: VisiblePoints, pixels: slice) -> Floats:
     """cos(E) at some visible points, (points,), near its maximum exact; -1 where cos(I) is not above 0."""
     rays, _ = fast_rays(light, points.rows[:, pixels], points.radius)
-    cosines: Floats = np.where(rays.incidence > 0, rays.eye, np.float64(-1))
+    cosines: Floats = np.where(rays.cos_incidence > 0, rays.cos_eye, np.float64(-1))
     near = np.flatnonzero(cosines >= max(cosines.max() - ROUNDING, 0))
-    cosines[near] = exact_rays_to(light, columns(rays.rows, near)).eye
+    cosines[near] = exact_rays_to(light, columns(rays.rows, near)).cos_eye
     return cosines
 
 

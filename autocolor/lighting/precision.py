@@ -28,7 +28,7 @@ def uncertain_share(light: CameraLight, rays: Rays, rounding: float) -> Booleans
 
     Each cos(L) is off by at most `rounding`.
     """
-    row, cosines = light.row, rays.light
+    row, cosines = light.row, rays.cos_light
     if cosines is None:
         return None
     uncertain = is_steep(cosines, row.concentration, rounding)
@@ -53,9 +53,9 @@ def uncertain_factor(
     """
     rounding = max(rounding, ROUNDING_OF_EYE)
     if isinstance(model, Phong):
-        return is_steep(rays.eye, model.exponent, rounding)
+        return is_steep(rays.cos_eye, model.exponent, rounding)
     spread = model.steepness * (rounding + ROUNDING_OF_HALF) / ERROR
-    least = rays.incidence + rays.view
+    least = rays.cos_incidence + rays.cos_view
     uncertain: Booleans = factor * spread > least * least
     return uncertain
 

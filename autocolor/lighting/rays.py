@@ -85,9 +85,9 @@ def fast_rays(light: CameraLight, rows: Singles, radius: float) -> tuple[Rays, f
     rays = Rays(length, incidence, eye, ahead, rows)
     if len(places):
         exact = rays_to(light, columns(rows, places))
-        length[places], incidence[places], eye[places] = exact.length, exact.incidence, exact.eye
-        if ahead is not None and exact.light is not None:
-            ahead[places] = exact.light
+        length[places], incidence[places], eye[places] = exact.length, exact.cos_incidence, exact.cos_eye
+        if ahead is not None and exact.cos_light is not None:
+            ahead[places] = exact.cos_light
     # The nearest point is at most as far from the origin as the light and the ray together.
     distance, shortest = math.sqrt(square), math.sqrt(max(least, close, LEAST_DISTANCE**2))
     size = distance + min(radius, distance + shortest)

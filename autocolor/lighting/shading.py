@@ -90,12 +90,12 @@ def shade(
 
     # Find the points that face the light and may be within its controls.
     rays, rounding = fast_rays(light, rows, points.radius)
-    facing = rays.incidence > 0
+    facing = rays.cos_incidence > 0
     is_lit = facing if is_lit is None else np.logical_and(is_lit, facing, out=is_lit)
     if light.reach is not None:
         is_lit &= rays.length < light.reach
-    if rays.light is not None:
-        is_lit &= rays.light >= np.float32(_least_cosine(light.row) - rounding - ROUNDING)
+    if rays.cos_light is not None:
+        is_lit &= rays.cos_light >= np.float32(_least_cosine(light.row) - rounding - ROUNDING)
     count = np.count_nonzero(is_lit)
     if not count:
         out[:] = 0
@@ -153,9 +153,9 @@ def _reflect(
         some, planes = rays.at(here), out[:, here]
         factor = specular_factor(model, some)
         if share is None:
-            planes[DIFFUSE], planes[SPECULAR] = some.incidence, factor
+            planes[DIFFUSE], planes[SPECULAR] = some.cos_incidence, factor
         else:
-            np.multiply(some.incidence, share[here], out=planes[DIFFUSE])
+            np.multiply(some.cos_incidence, share[here], out=planes[DIFFUSE])
             np.multiply(factor, share[here], out=planes[SPECULAR])
         of_factor = uncertain_factor(model, some, factor, rounding)
         if of_factor is not None:

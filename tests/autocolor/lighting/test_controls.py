@@ -118,7 +118,7 @@ def test_a_point_is_in_the_cone_up_to_its_rim(cosine: float, cone_angle: float, 
     points = wall_points()
     rays, _ = fast_rays(camera_light(LIGHT, points), points.rows, points.radius)
     for kind in (np.float32, np.float64):
-        assert is_within(dataclasses.replace(rays, light=np.array([cosine], kind)), cone_angle) == [lit]
+        assert is_within(dataclasses.replace(rays, cos_light=np.array([cosine], kind)), cone_angle) == [lit]
 
 
 @given(numbers(1, 180), numbers(0, 1))

@@ -35,8 +35,8 @@ def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, d
     points = points_of(view)
     light = Light("light", position, direction=direction, concentration=1)
     rays = rays_of(light, points)
-    assert rays.light is not None
-    cos_incidence, cos_eye = rays.incidence, rays.eye
+    assert rays.cos_light is not None
+    cos_incidence, cos_eye = rays.cos_incidence, rays.cos_eye
     reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
     for number, point in enumerate(points.world_points.tolist()):
         ray = minus(position, point)
@@ -46,7 +46,7 @@ def test_lengths_and_cosines_agree_with_the_rays(view: View, position: Vector, d
         # The point itself is rounded to float32.
         error = 2e-6 + 1e-6 / length
         assert rays.length[number] * points.unit == pytest.approx(length, abs=1e-5)
-        assert rays.light[number] == pytest.approx(-dot(unit(ray), unit(direction)), abs=error)
+        assert rays.cos_light[number] == pytest.approx(-dot(unit(ray), unit(direction)), abs=error)
         normal = points.world_normals[number].tolist()
         assert cos_incidence[number] == pytest.approx(dot(unit(ray), normal), abs=error)
         assert cos_eye[number] == pytest.approx(dot(unit(ray), reflected[number].tolist()), abs=error)
@@ -58,11 +58,11 @@ def test_cosines_near_1_are_off_by_at_most_the_rounding(distance: float, side: V
     light = Light("light", times(distance, unit(side)), aim=(0.1, 0.0, 0.05), concentration=1)
     ready = camera_light(light, points)
     rays, rounding = fast_rays(ready, points.rows, points.radius)
-    exact = exact_rays_to(ready, points.rows).light
-    assert rays.light is not None
+    exact = exact_rays_to(ready, points.rows).cos_light
+    assert rays.cos_light is not None
     assert exact is not None
     near = np.flatnonzero(exact > 0.9)
-    assert (np.abs(rays.light - exact)[near] <= 1.1 * rounding).all()
+    assert (np.abs(rays.cos_light - exact)[near] <= 1.1 * rounding).all()
 
 
 def test_a_ray_to_a_light_at_the_point_itself_has_a_length() -> None:
@@ -70,7 +70,7 @@ def test_a_ray_to_a_light_at_the_point_itself_has_a_length() -> None:
     for point in points.world_points.tolist():
         rays = rays_of(Light("light", tuple(point)), points)
         assert (rays.length > 0).all()
-        assert np.isfinite(rays.incidence).all()
+        assert np.isfinite(rays.cos_incidence).all()
 
 
 @given(directions(), st.sampled_from([1e16, 1e25, 1e36]))
@@ -81,7 +81,7 @@ def test_the_rays_to_a_light_beyond_all_are_parallel(toward: Vector, distance: f
     rays = rays_of(light, points)
     assert float(rays.length.max()) <= FARTHEST * 1.8
     expected = points.world_normals @ np.array(unit(toward))
-    assert rays.incidence == pytest.approx(expected, abs=1e-5)
+    assert rays.cos_incidence == pytest.approx(expected, abs=1e-5)
 
 
 @given(outside_views(), vectors(numbers(-9, 9)), directions())
@@ -91,20 +91,20 @@ def test_the_rays_to_a_light_at_infinity_are_against_its_axis_wherever_it_is(
     points = points_of(view)
     light = Light("light", position, direction=direction, at_infinity=True, concentration=1)
     rays = rays_of(light, points)
-    assert rays.light is not None
-    assert (rays.light == 1).all()
+    assert rays.cos_light is not None
+    assert (rays.cos_light == 1).all()
     toward = np.array(times(-1, unit(direction)))
-    assert rays.incidence == pytest.approx(points.world_normals @ toward, abs=1e-6)
+    assert rays.cos_incidence == pytest.approx(points.world_normals @ toward, abs=1e-6)
     reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
-    assert rays.eye == pytest.approx(reflected @ toward, abs=1e-6)
-    assert rays_of(light.replace(concentration=0), points).light is None
+    assert rays.cos_eye == pytest.approx(reflected @ toward, abs=1e-6)
+    assert rays_of(light.replace(concentration=0), points).cos_light is None
 
 
 @given(outside_views(), st.sampled_from([(0, 0, -1), (0, 0, 1), (1, 0, 0), (0, 1, -1), (1, 0, 1)]))
 def test_parallel_rays_do_not_light_the_faces_that_they_run_along(view: View, direction: Vector) -> None:
     points = visible_surfaces(cube(), view, (1,), 9, 12)
     light = Light("light", (3, -3, 3), direction=direction, at_infinity=True)
-    cosines = rays_of(light, points).incidence
+    cosines = rays_of(light, points).cos_incidence
     expected = np.round(points.world_normals) @ -np.array(unit(direction))
     assert cosines == pytest.approx(expected, abs=1e-6)
     assert (np.sign(cosines) == np.sign(expected)).all()
