@@ -8,8 +8,8 @@ intensity at a point is
 
 I is the angle between the normal and the ray to the light, E the angle between that ray and the view mirrored
 in the surface, and L the angle between the light's direction and the ray from the light. D, S and N are the
-surface's. A light gives nothing where cos(I) <= 0. Each of its controls multiplies it by a share, 0 to 1:
-cos^C(L) for the concentration C, and for a cone of the angle A, 1 where L <= A and 0 beyond. Every power of a
+surface's. A light gives nothing where cos(I) <= 0. Each control of a light multiplies it by a share, 0 to 1:
+cos^C(L) for the concentration C, and for a cone of the angle A, 1 where L <= A and 0 beyond. A power of a
 negative cosine is 0.
 
 `rays_to` has the cosines, and `light_at` has both terms of a light without its intensity, D and S, in one
