@@ -148,7 +148,10 @@ class LevelImage(DisplayImage):
             and before.bands == bands
             and all(getattr(before.scene, name) == getattr(scene, name) for name in MAPPING)
         ):
-            return cls(scene, picture, ranges, before.words, block, bands)
+            image = cls(scene, picture, ranges, before.words, block, bands)
+            # Words and lowest levels depend on the same ranges of intensity.
+            vars(image)["_floors"] = before._floors
+            return image
         words = words_of(picture, ranges, ranges_of(scene, picture), scene.mapping, scene.dither, bands)
         return cls(scene, picture, ranges, in_blocks(words, block), block, bands)
 

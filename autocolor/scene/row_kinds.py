@@ -179,9 +179,10 @@ class TableRows(tuple[RowOfTable, ...]):
     @overload
     def __getitem__(self, key: slice) -> tuple[RowOfTable, ...]: ...
     def __getitem__(self, key: SupportsIndex | slice | str) -> RowOfTable | tuple[RowOfTable, ...]:
-        if isinstance(key, (int, slice, SupportsIndex)):
-            return super().__getitem__(key)
-        return super().__getitem__(place_named(self, key))
+        # Protocols are checked slowly, so names and numbers come first.
+        if isinstance(key, str) or not isinstance(key, (int, slice, SupportsIndex)):
+            key = place_named(self, key)
+        return super().__getitem__(key)
 
     if not TYPE_CHECKING:
 
