@@ -233,7 +233,7 @@ def _picture_of(
     return picture, smooth
 
 
-def averaged(entries: Bytes, words: Words, smooth: int) -> Bytes:
+def averaged(entries: Bytes, words: Words | Bytes, smooth: int) -> Bytes:
     """The colors of words, averaged as light over squares of `smooth` pixels a side.
 
     `entries` is the lookup table, (1024, 3) uint8, and `words` (lines, elements) with multiples of `smooth`.

@@ -378,7 +378,7 @@ def thumbnail(colors: Bytes, box: Box) -> Bytes:
     side = max(1, -(-colors.shape[0] // box.lines), -(-colors.shape[1] // box.elements))
     side = min(side, *colors.shape[:2])
     lines, elements = (count // side * side for count in colors.shape[:2])
-    small = averaged(ALL_LEVELS, colors[:lines, :elements], side)  # type: ignore[arg-type]
+    small = averaged(ALL_LEVELS, colors[:lines, :elements], side)
     return small[: box.lines, : box.elements]
 
 

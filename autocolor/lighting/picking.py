@@ -22,6 +22,7 @@ from autocolor.lighting.shading import SPECULAR
 from autocolor.scene.changes import LightChanges
 from autocolor.scene.following import light_frame
 from autocolor.scene.lights import Light
+from autocolor.scene.row_kinds import place_named
 from autocolor.scene.scene import NORMALS, Scene
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.visible_points import NORMAL, PIXELS_AT_ONCE, POINT, Seen, Sight, VisiblePoints
@@ -57,7 +58,7 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
     scene, points = sight.scene, sight.points
     row = scene.lights_in_world[light]
     camera = camera_light(row, points)
-    number = None if surface is None else scene.surfaces.index(scene.surfaces[surface]) + 1
+    number = None if surface is None else place_named(scene.surfaces, surface) + 1
     most, found = 0.0, None
     for each in (each for each in points.slices if number in (None, each.surface_number)):
         for chunk in chunks(each.stop, PIXELS_AT_ONCE, each.start):

@@ -72,9 +72,9 @@ class DisplayImage(ABC):
     def range_of(self, name: str) -> LevelRange:
         """The range of a surface. Raises UsageError for an unknown surface, and for a surface of no part."""
         if name not in self.ranges:
-            surface = self.scene.surfaces[place_named(self.scene.surfaces, name)]
+            place_named(self.scene.surfaces, name)
             raise UsageError(
-                f"surface {surface.name!r} has no levels, because no part has it{nearest(name, self.ranges)}"
+                f"surface {name!r} has no levels, because no part has it{nearest(name, self.ranges)}"
             )
         return self.ranges[name]
 
@@ -150,7 +150,8 @@ class LevelImage(DisplayImage):
         ):
             image = cls(scene, picture, ranges, before.words, block, bands)
             # Words and lowest levels depend on the same ranges of intensity.
-            vars(image)["_floors"] = before._floors
+            if "_floors" in vars(before):
+                vars(image)["_floors"] = before._floors
             return image
         words = words_of(picture, ranges, ranges_of(scene, picture), scene.mapping, scene.dither, bands)
         return cls(scene, picture, ranges, in_blocks(words, block), block, bands)
