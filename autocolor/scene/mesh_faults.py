@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -184,9 +185,10 @@ def polygon_faults(mesh: Mesh) -> Iterator[Fault]:
 
 def quad_shapes(mesh: Mesh) -> dict[str, int]:
     """Counts of quads: all, and those of each shape; a concave or crossed quad may also be warped."""
-    counts = {fault.kind: len(fault.rows) for fault in polygon_faults(mesh)}
+    # The shapes are the first three faults; the search for repeated polygons is left out.
+    shapes = islice(polygon_faults(mesh), 3)
     quads = len(mesh.node_numbers) - mesh.triangle_count
-    return {"quads": quads, **{kind: counts[kind] for kind in ("warped", "concave", "crossed")}}
+    return {"quads": quads, **{shape.kind: len(shape.rows) for shape in shapes}}
 
 
 def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Booleans, Booleans]:
