@@ -15,7 +15,6 @@ from ramtek_emu.inspection.states import Packer, State, packed_dots, size_of, th
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.inspection.watching import watched
 from ramtek_emu.instruction_set.disassembler import items
-from ramtek_emu.memory.cursors import ENTER
 from ramtek_emu.memory.frame_buffer import WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Window
 from ramtek_emu.snapshot import snapshot_bytes
@@ -251,8 +250,7 @@ def test_a_cursor_that_only_one_stream_reads_differs_by_its_enter() -> None:
     found = first_difference(Stream(SMALL, words[0]), Stream(SMALL, words[1]), start)
     assert found is not None
     assert found.number == 2
-    states = [cursors[0]["state"] for cursors in found.where["cursors"]]
-    assert states == [ENTER, 0]
+    assert [cursors[0]["enter"] for cursors in found.where["cursors"]] == [True, False]
 
 
 def test_a_difference_says_where() -> None:
