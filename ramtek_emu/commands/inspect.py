@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
@@ -16,6 +17,7 @@ from ramtek_emu.commands.displays import (
     start_option,
     tell,
 )
+from ramtek_emu.writing import write_atomically
 
 if TYPE_CHECKING:
     from ramtek_emu.inspection.histories import Write
@@ -25,9 +27,29 @@ EXAMPLES: Final = """\b
 Examples:
   ramtek inspect drawing.ramtek                            step and scrub in a window
   ramtek inspect drawing.ramtek --at 120 -o drawing.png    the picture after 120 instructions
-  ramtek inspect drawing.ramtek --who 200 150              the instructions that wrote line 200, element 150
+  ramtek inspect drawing.ramtek --at 120 --snapshot s.png  the display after 120 instructions, to go on with
+  ramtek inspect drawing.ramtek --range 80..120 -o part    the words of instructions 80 to 120
+  ramtek inspect drawing.ramtek --who 150,200              the instructions that wrote element 150, line 200
   ramtek inspect drawing.ramtek --who-entry 7 --json       the table loads that wrote entry 7
 """
+
+
+class NumberPair(click.ParamType[tuple[int, int]]):
+    """Two numbers, at least 0, with a sign between them."""
+
+    name = "pair"
+
+    def __init__(self, thing: str, sign: str) -> None:
+        self.thing, self.sign = thing, sign
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        """The two numbers; UsageError if the text is something else."""
+        first, _, second = value.partition(self.sign)
+        if not (first + second).isdecimal() or not first or not second:
+            self.fail(f"{self.thing} must be two numbers with {self.sign} between them, not {value!r}", param)
+        return int(first), int(second)
 
 
 @click.command(epilog=EXAMPLES)
@@ -38,12 +60,23 @@ Examples:
     metavar="N",
     help="The instruction: its line in `ramtek list --json`, or 0 for power-on. The last if not given.",
 )
-@click.option("-o", "--output", type=click.Path(), metavar="PNG", help="Write the picture, open no window.")
+@click.option(
+    "-o", "--output", type=click.Path(), metavar="OUT", help="Write the picture, or the words of --range."
+)
+@click.option(
+    "--snapshot", type=click.Path(), metavar="PNG", help="Save the display: words, table, parameters."
+)
+@click.option(
+    "--range",
+    "numbers",
+    type=NumberPair("a range of instructions", ".."),
+    metavar="A..B",
+    help="The instructions A to B, for -o.",
+)
 @click.option(
     "--who",
-    nargs=2,
-    type=click.IntRange(min=0),
-    metavar="LINE ELEMENT",
+    type=NumberPair("a pixel", ","),
+    metavar="ELEMENT,LINE",
     help="List the instructions that wrote a word of the memory, the newest first.",
 )
 @click.option(
@@ -58,13 +91,15 @@ Examples:
     is_flag=True,
     help="The answer as JSON; without a question: the instruction and the parameters after it.",
 )
-@click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
+@click.option("--force", is_flag=True, help="Overwrite what exists.")
 @configuration_option
 @start_option
 def inspect(
     stream: str,
     at: int | None,
     output: str | None,
+    snapshot: str | None,
+    numbers: tuple[int, int] | None,
     who: tuple[int, int] | None,
     who_entry: int | None,
     as_json: bool,
@@ -78,33 +113,47 @@ def inspect(
     """
     if who is not None and who_entry is not None:
         raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
-    refuse_outputs(force, pictures=[output])
+    if numbers is not None and output is None:
+        raise click.UsageError("a range must have an output; add -o OUT")
+    refuse_outputs(force, *([output] if numbers else ()), pictures=[snapshot, None if numbers else output])
     display = display_asked_for(configuration, start)
 
     from ramtek_emu.inspection.replay import Replay
 
     sizes = display.configuration
-    refuse_outside("a line", None if who is None else who[0], sizes.lines - 1)
-    refuse_outside("an element", None if who is None else who[1], sizes.elements - 1)
+    refuse_outside("an element", None if who is None else who[0], sizes.elements - 1)
+    refuse_outside("a line", None if who is None else who[1], sizes.lines - 1)
     refuse_outside("an entry", who_entry, sizes.entries - 1)
     replay = Replay(read_stream(stream, sizes), display)
     last = len(replay.stream)
     refuse_outside("an instruction", at, last, stream)
-    number = last if at is None else at
-    if output is None and who is None and who_entry is None and not as_json:
+    refuse_outside("an instruction", None if numbers is None else max(numbers), last, stream)
+    asks = who is not None or who_entry is not None
+    if output is None and snapshot is None and not asks and not as_json:
         from ramtek_emu.inspection.inspector import inspect
 
         replay.go_to(0 if at is None else at)
         inspect(replay, f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}")
         return
-    if output is not None or (who is None and who_entry is None):
+    number = last if at is None else at
+    if numbers is not None and output is not None:
+        words = replay.stream.words_between(max(0, numbers[0] - 1), numbers[1])
+        write_atomically(Path(output), words.astype("<u2").tobytes(), overwrite=force)
+        tell(f"wrote {output}")
+    elif output is not None:
         replay.go_to(number)
-    if output is not None:
         replay.display.save_png(output, overwrite=force)
         tell(f"wrote {output}")
-    if who is not None or who_entry is not None:
+    if snapshot is not None:
+        from ramtek_emu.snapshot import write_snapshot
+
+        replay.go_to(number)
+        write_snapshot(replay.display, snapshot, overwrite=force)
+        tell(f"wrote {snapshot}")
+    if asks:
         answer(replay, who, who_entry, number, as_json)
     elif as_json:
+        replay.go_to(number)
         click.echo(json.dumps(plain_moment(replay)))
 
 
@@ -120,9 +169,9 @@ def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until
     from ramtek_emu.inspection.histories import finished, writes_to_entry, writes_to_pixel
 
     if who is not None:
-        line, element = who
+        element, line = who
         writes = finished(writes_to_pixel(replay, line, element, until))
-        thing = f"line {line}, element {element}"
+        thing = f"element {element}, line {line}"
     else:
         writes = finished(writes_to_entry(replay, entry or 0, until))
         thing = f"entry {entry}"

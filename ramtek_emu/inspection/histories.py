@@ -65,6 +65,19 @@ def next_change(replay: Replay, window: Window, after: int) -> Search[int | None
     return None
 
 
+def last_change(replay: Replay, window: Window, before: int) -> Search[int | None]:
+    """The last instruction before the instruction `before` that changes a word in a window, or None."""
+    for stretch in reversed([*replay.stretches(0, before - 1)]):
+        number = None
+        for change in _words_written(replay, window, stretch.state.number, stretch.end):
+            if change is not None and not np.array_equal(change.before, change.after):
+                number = change.number
+            yield
+        if number is not None:
+            return number
+    return None
+
+
 def writes_to_entry(replay: Replay, entry: int, until: int) -> Search[list[Write]]:
     """The writes to an entry of the lookup table up to the instruction `until`, oldest first."""
     writes = []
@@ -85,6 +98,16 @@ def next_entry_change(replay: Replay, first: int, end: int, after: int) -> Searc
             return load.number
         yield
     return None
+
+
+def last_entry_change(replay: Replay, first: int, end: int, before: int) -> Search[int | None]:
+    """The last instruction before `before` that changes a color of the entries `first` to `end`, or None."""
+    number = None
+    for load in _entries_written(replay, 0, before - 1):
+        if not np.array_equal(load.before[first:end], load.after[first:end]):
+            number = load.number
+        yield
+    return number
 
 
 class WordsWritten(NamedTuple):

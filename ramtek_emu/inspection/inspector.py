@@ -8,16 +8,22 @@ mouse over its field is its joystick.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 from typing import Final, NamedTuple
 
-from ramtek_emu.inspection.page import InspectorPage
+from ramtek_emu.errors import RamtekError
+from ramtek_emu.inspection import session as sessions
+from ramtek_emu.inspection.page import InspectorPage, layout_of
 from ramtek_emu.inspection.panels import PAUSE
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import EntryRange, InspectionSession
+from ramtek_emu.inspection.session import EntryRange, Inspection, display_of, inspection_of
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.overlay import KEYS
 from ramtek_emu.monitor.window import LEFT, RIGHT, TICK_MILLISECONDS, Key, Monitor, Pointer
+from ramtek_emu.snapshot import snapshot_bytes
+from ramtek_emu.writing import PNG, write_numbered
 
 WHEEL_ROWS: Final = 3
 
@@ -27,38 +33,47 @@ def inspect(replay: Replay, caption: str = "RAMTEK 9300") -> None:
 
     NoScreenError if there is no screen.
     """
-    Inspector(InspectionSession(replay), caption).run()
+    Inspector(inspection_of(replay), caption).run()
 
 
 def inspect_host(host: RunningHost, caption: str, ends: Callable[[], bool]) -> None:
     """Follow a running display in a window, until it is closed or `ends()` is true; NoScreenError."""
-    Inspector(InspectionSession(host.replay, host), caption).run(ends)
+    Inspector(inspection_of(host.replay, host), caption).run(ends)
 
 
 class Inspector:
-    """The window of a session: the page, the keys and the mouse."""
+    """The window of an inspection: the page, the keys and the mouse."""
 
-    def __init__(self, session: InspectionSession, caption: str = "RAMTEK 9300") -> None:
-        self.session = session
-        self.bindings = tuple(binding for binding in BINDINGS if session.host or not binding.is_live)
+    def __init__(self, session: Inspection, caption: str = "RAMTEK 9300") -> None:
+        is_live, display = session.host is not None, display_of(session)
+        self.bindings = tuple(binding for binding in BINDINGS if is_live or not binding.is_live)
         self.buttons = tuple(binding for binding in self.bindings if binding.button)
-        self.page = InspectorPage(
-            session,
-            [binding.button for binding in self.buttons],
-            help_rows(session.host is not None),
-            caption,
-        )
-        self._anchor: tuple[str, Point, int] | None = None
-        """Where the mouse went down: the part of the page, the place, and the entry there."""
+        labels = [binding.button for binding in self.buttons]
+        sizes = display.configuration
+        layout = layout_of(sizes.shown_elements, sizes.shown_lines, sizes.cursors, labels)
+        rows = layout.boxes["listing"].rows - 1, layout.boxes["history"].rows - 1
+        session = sessions.with_rows(session, *rows)
+        self.page = InspectorPage(session, layout, labels, help_rows(is_live), caption)
+        self._anchor: tuple[str, Point] | None = None
+        """Where the mouse went down: the part of the page, and the place."""
         self.monitor = Monitor(
-            session.display,
+            display,
             caption,
             source=self.page,
             on_key=self.press,
             on_pointer=self.point,
-            on_tick=session.tick,
-            on_message=session.tell,
+            on_tick=lambda: self._do(sessions.tick),
+            on_message=lambda message: self._do(sessions.tell, message),
         )
+
+    @property
+    def session(self) -> Inspection:
+        """The inspection that is shown."""
+        return self.page.session
+
+    def _do(self, action: Callable[..., Inspection], *values: object) -> None:
+        """Show the inspection after an action."""
+        self.page.session = action(self.page.session, *values)
 
     def run(self, ends: Callable[[], bool] = lambda: False) -> None:
         """Keep the window open until it is closed, or until `ends()` is true."""
@@ -66,7 +81,7 @@ class Inspector:
         monitor.open()
         try:
             while monitor.is_open and not ends():
-                monitor.step(0 if self.session.is_busy else TICK_MILLISECONDS)
+                monitor.step(0 if sessions.is_busy(self.session) else TICK_MILLISECONDS)
         finally:
             monitor.close()
 
@@ -75,24 +90,24 @@ class Inspector:
         session = self.session
         if key.name in ("f3", "f12"):
             return False
-        is_plain = not key.control and not key.alt
-        if session.state.prompt and key.name in ("return", "enter"):
-            session.enter()
+        if key.name in ("return", "enter"):
+            self._do(sessions.enter, key.shift)
             return True
-        if session.state.prompt and key.name == "backspace":
-            session.erase_typed()
+        if session.prompt and key.name == "backspace":
+            self._do(sessions.ask, session.prompt, session.typed[:-1])
             return True
-        if is_plain and session.takes(key.text):
-            session.type(key.text)
-            return True
-        if is_plain and key.text.isascii() and key.text.isdigit():
-            session.ask("instruction", key.text)
-            return True
+        if not key.control and not key.alt and key.text:
+            if sessions.takes(session, key.text):
+                self._do(sessions.ask, session.prompt, session.typed + key.text)
+                return True
+            if key.text.isascii() and key.text.isdigit():
+                self._do(sessions.ask, "instruction", key.text)
+                return True
         name = f"{'shift ' if key.shift else ''}{'ctrl ' if key.control else ''}{key.name}"
         for binding in self.bindings:
             # On some keyboards a bracket is typed with other keys.
             if (name in binding.keys or key.text in binding.keys) and not (key.repeated and binding.is_once):
-                binding.action(session)
+                self._do(binding.action)
                 break
         return True
 
@@ -101,83 +116,68 @@ class Inspector:
         session, page = self.session, self.page
         place = Point(pointer.element, pointer.line)
         part, row = page.panel_at(place)
+        is_left = pointer.button == LEFT
         if pointer.action.startswith("wheel"):
-            self._turn_wheel(part, pointer.steps if pointer.action == "wheel down" else -pointer.steps)
-        elif session.state.is_following and not session.state.page and self._steers(part, pointer):
+            steps = pointer.steps if pointer.action == "wheel down" else -pointer.steps
+            if part in WHEEL:
+                self._do(WHEEL[part], steps)
+        elif (
+            session.is_following
+            and not session.page
+            and self._anchor is None
+            and (part == "stage" or pointer.action == "release")
+        ):
+            # The mouse is the joystick over the field, or where a button goes up.
             on_field = page.field_place(place)
             self.monitor.steer(pointer._replace(element=on_field.element, line=on_field.line))
-            session.point_at(on_field)
-        elif pointer.action == "press" and pointer.button == LEFT:
+            self._do(point_at, on_field)
+        elif pointer.action == "press" and is_left:
             self._press_at(part, row, place)
         elif pointer.action == "press" and pointer.button == RIGHT and part == "stage":
-            session.select(None)
+            self._do(sessions.select, None)
         elif pointer.action == "move":
             self._move_to(part, place)
-        elif pointer.action == "release" and pointer.button == LEFT:
-            self._release_at(place)
-
-    def _steers(self, part: str, pointer: Pointer) -> bool:
-        """Whether the mouse is the joystick: over the field, or where a button goes up."""
-        return self._anchor is None and (part == "stage" or pointer.action == "release")
-
-    def _turn_wheel(self, part: str, steps: int) -> None:
-        session = self.session
-        if part == "listing":
-            session.scroll_listing(WHEEL_ROWS * steps)
-        elif part == "history":
-            session.scroll_history(WHEEL_ROWS * steps)
-        elif part == "bar":
-            session.step(steps)
+        elif pointer.action == "release" and is_left:
+            if self._anchor is not None and self._anchor[0] == "stage":
+                self._select_to(self._anchor[1], place, is_final=True)
+            self._anchor = None
 
     def _press_at(self, part: str, row: int, place: Point) -> None:
-        session, page = self.session, self.page
         if part == "button":
-            self.buttons[row].action(session)
-        elif part == "listing" and row >= 0:
-            session.click_listing(row)
-        elif part == "history" and row >= 0:
-            session.click_history(row)
-        elif part == "bar":
-            self._anchor = part, place, 0
-            session.go(page.number_at(place.element))
-        elif part == "stage" and session.state.page != "help":
-            self._anchor = part, place, self._entry_at(place)
-
-    def _entry_at(self, place: Point) -> int:
-        """The entry at a place of the page of entries, -1 where there is none."""
-        entry = self.page.entry_at(place) if self.session.state.page == "entries" else None
-        return -1 if entry is None else entry
+            self._do(self.buttons[row].action)
+        elif part in ("listing", "history") and row >= 0:
+            self._do(sessions.click_listing if part == "listing" else sessions.click_history, row)
+        elif part == "bar" or (part == "stage" and self.session.page != "help"):
+            self._anchor = part, place
+            if part == "bar":
+                self._do(sessions.go, self.page.number_at(place.element))
 
     def _move_to(self, part: str, place: Point) -> None:
-        session, page = self.session, self.page
+        page = self.page
         if self._anchor is not None and self._anchor[0] == "bar":
-            session.go(page.number_at(place.element))
+            self._do(sessions.go, page.number_at(place.element))
             return
-        if part != "stage" or session.state.page == "help":
-            session.point_at()
-        elif session.state.page == "entries":
-            session.point_at(entry=page.entry_at(place))
+        if part != "stage" or self.session.page == "help":
+            self._do(point_at)
+        elif self.session.page == "entries":
+            self._do(point_at, None, page.entry_at(place))
         else:
-            session.point_at(page.field_place(place))
+            self._do(point_at, page.field_place(place))
         if self._anchor is not None and place != self._anchor[1]:
-            self._select_to(place, is_final=False)
+            self._select_to(self._anchor[1], place, is_final=False)
 
-    def _release_at(self, place: Point) -> None:
-        if self._anchor is not None and self._anchor[0] == "stage":
-            self._select_to(place, is_final=True)
-        self._anchor = None
-
-    def _select_to(self, place: Point, is_final: bool) -> None:
+    def _select_to(self, begin: Point, end: Point, is_final: bool) -> None:
         """Select from where the mouse went down to a place; a final selection asks for its history."""
-        if self._anchor is None:
-            return
-        session, page = self.session, self.page
-        _, begin, entry = self._anchor
-        if session.state.page == "entries":
-            if entry >= 0 and (last := self._entry_at(place)) >= 0:
-                session.select(EntryRange(min(entry, last), max(entry, last) + 1), is_final)
+        page = self.page
+        if self.session.page == "entries":
+            first, last = page.entry_at(begin), page.entry_at(end)
+            if first is not None and last is not None:
+                entries = EntryRange(min(first, last), max(first, last) + 1)
+                self._do(sessions.select, entries, is_final)
         else:
-            session.select(session.memory_window(page.field_place(begin), page.field_place(place)), is_final)
+            places = page.field_place(begin), page.field_place(end)
+            window = sessions.memory_window(display_of(self.session), *places)
+            self._do(sessions.select, window, is_final)
 
 
 class KeyBinding(NamedTuple):
@@ -187,7 +187,7 @@ class KeyBinding(NamedTuple):
     help: str
     keys: tuple[str, ...]
     """The names of keys, with "shift " or "ctrl " before a name."""
-    action: Callable[[InspectionSession], object]
+    action: Callable[[Inspection], Inspection]
     button: str = ""
     """The text of the button; "" for no button."""
     is_once: bool = False
@@ -196,77 +196,76 @@ class KeyBinding(NamedTuple):
     """Whether the action is for running displays only."""
 
 
-def pause_or_go_on(session: InspectionSession) -> None:
-    """Pause a running display, or let it go on."""
-    if session.state.is_following:
-        session.pause()
-    else:
-        session.go_on()
+def point_at(session: Inspection, place: Point | None = None, entry: int | None = None) -> Inspection:
+    """Note the place of the screen, or the entry, under the pointer."""
+    return replace(session, pointer=place, pointed_entry=entry)
+
+
+def save_snapshot(session: Inspection) -> Inspection:
+    """Save the display under the next free number, and show the path."""
+    try:
+        path = write_numbered(snapshot_bytes(display_of(session)), Path(), "snapshot", PNG)
+    except RamtekError as refusal:
+        return sessions.tell(session, str(refusal))
+    return sessions.tell(session, f"saved {path}")
 
 
 BINDINGS: Final = (
-    KeyBinding("Space", "pause the host, or let it go on", ("space",), pause_or_go_on, PAUSE, True, True),
     KeyBinding(
-        "Home", "the start, before the first instruction", ("home",), lambda session: session.go(0), "|<"
-    ),
-    KeyBinding("Page Up", "ten back", ("page up",), lambda session: session.step(-10), "-10"),
-    KeyBinding("Left, Up", "step back", ("left", "up", ","), lambda session: session.step(-1), "<"),
-    KeyBinding(
-        "Right, Down",
-        "step; a paused host sends its next instruction",
-        ("right", "down", "."),
-        lambda session: session.step(1),
-        ">",
-    ),
-    KeyBinding("Page Down", "ten on", ("page down",), lambda session: session.step(10), "+10"),
-    KeyBinding(
-        "End", "the end of the stream", ("end",), lambda session: session.go(session.state.length), ">|"
+        "Space", "pause the host, or let it go on", ("space",),
+        lambda session: (sessions.pause if session.is_following else sessions.go_on)(session),
+        PAUSE, True, True,
     ),
     KeyBinding(
-        "0 to 9, G",
-        "type an instruction's number, then Enter",
-        ("g",),
-        lambda session: session.ask("instruction"),
-        "go to",
+        "Home", "the start, before the first instruction", ("home",),
+        lambda session: sessions.go(session, 0), "|<",
+    ),
+    KeyBinding("Page Up", "ten back", ("page up",), lambda session: sessions.step(session, -10), "-10"),
+    KeyBinding("Left, Up", "step back", ("left", "up", ","), lambda session: sessions.step(session, -1), "<"),
+    KeyBinding(
+        "Right, Down", "step; a paused host sends its next instruction", ("right", "down", "."),
+        lambda session: sessions.step(session, 1), ">",
+    ),
+    KeyBinding("Page Down", "ten on", ("page down",), lambda session: sessions.step(session, 10), "+10"),
+    KeyBinding(
+        "End", "the end of the stream", ("end",), lambda session: sessions.go(session, session.length), ">|"
     ),
     KeyBinding(
-        "O",
-        "type an opcode, then Enter: its next instruction",
-        ("o",),
-        lambda session: session.ask("opcode"),
-        "opcode",
-    ),
-    KeyBinding("N", "the next of the same opcode", ("n",), lambda session: session.next_opcode(), "next"),
-    KeyBinding(
-        "Shift+N",
-        "the one before of the same opcode",
-        ("shift n",),
-        lambda session: session.next_opcode(back=True),
+        "0 to 9, G", "type an instruction's number, then Enter", ("g",),
+        lambda session: sessions.ask(session, "instruction"), "go to",
     ),
     KeyBinding(
-        "C",
-        "the next change of what is selected",
-        ("c",),
-        lambda session: session.next_change(),
-        "change",
+        "F", "type a text of the listing, such as FORE=7 or WI WIN=", ("f",),
+        lambda session: sessions.ask(session, "text"), "find",
+    ),
+    KeyBinding("Enter", "the next instruction with the text", (), sessions.find),
+    KeyBinding("Shift+Enter", "the last one before with the text", (), sessions.find),
+    KeyBinding("C", "the next change of what is selected", ("c",), sessions.next_change, "change"),
+    KeyBinding(
+        "Shift+C", "the change before of what is selected", ("shift c",),
+        lambda session: sessions.next_change(session, back=True),
     ),
     KeyBinding(
-        "[", "the write before, in the history", ("[",), lambda session: session.next_write(back=True)
+        "[ and ]", "the write before, or after, in the history", ("[",),
+        lambda session: sessions.next_write(session, back=True),
     ),
+    KeyBinding("", "", ("]",), lambda session: sessions.next_write(session, back=False)),
     KeyBinding(
-        "]", "the write after, in the history", ("]",), lambda session: session.next_write(back=False)
+        "F4", "the entries of the lookup table, and back", ("f4",),
+        lambda session: sessions.turn_to(session, "entries"), "entries", True,
     ),
+    KeyBinding("S", "save a numbered snapshot of the display", ("s",), save_snapshot, "snapshot", True),
+    KeyBinding("Esc", "stop, close the page, or clear the selection", ("escape",), sessions.escape),
     KeyBinding(
-        "F4",
-        "the entries of the lookup table, and back",
-        ("f4",),
-        lambda session: session.turn_to("entries"),
-        "entries",
-        True,
+        "F1", "this help, and back", ("f1",), lambda session: sessions.turn_to(session, "help"), "help", True
     ),
-    KeyBinding("Esc", "stop, close the page, or clear the selection", ("escape",), InspectionSession.escape),
-    KeyBinding("F1", "this help, and back", ("f1",), lambda session: session.turn_to("help"), "help", True),
-)
+)  # fmt: skip
+WHEEL: Final[dict[str, Callable[[Inspection, int], Inspection]]] = {
+    "listing": lambda session, steps: sessions.scroll_listing(session, WHEEL_ROWS * steps),
+    "history": lambda session, steps: sessions.scroll_history(session, WHEEL_ROWS * steps),
+    "bar": sessions.step,
+}
+"""What the wheel does over a part of the page."""
 MOUSE_LIVE: Final = (("mouse, running", "over the field: the joystick; a click is ENTER"),)
 MOUSE: Final = (
     ("click a pixel", "its history; on the page of entries, an entry's"),
@@ -280,5 +279,9 @@ WINDOW_KEYS: Final = tuple(row for row in KEYS if row[0] in ("F3", "F10", "F11, 
 
 def help_rows(is_live: bool) -> list[tuple[str, str]]:
     """The keys and the mouse of an inspector, of a running display if `is_live`, with their actions."""
-    bindings = [(binding.keys_text, binding.help) for binding in BINDINGS if is_live or not binding.is_live]
+    bindings = [
+        (binding.keys_text, binding.help)
+        for binding in BINDINGS
+        if binding.help and (is_live or not binding.is_live)
+    ]
     return [*bindings, *(MOUSE_LIVE if is_live else ()), *MOUSE, *WINDOW_KEYS]

@@ -4,90 +4,79 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from itertools import islice
-from typing import Final, NamedTuple
+from typing import Final
 
+from ramtek_emu.configuration import Configuration
+from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.histories import Write
+from ramtek_emu.inspection.listing import meaning_of, rows_from
 from ramtek_emu.inspection.session import (
     EntryRange,
-    InspectionSession,
+    Inspection,
+    display_of,
     parameter_texts,
     selection_text,
-    values_of,
 )
 from ramtek_emu.instruction_set.disassembler import WORDS_PER_LINE
 from ramtek_emu.instruction_set.instruction import NO_WORDS
-from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Window
-from ramtek_emu.monitor.overlay import ORANGE, WHITE, YELLOW
+from ramtek_emu.monitor.boxes import BLUE, GRAY, ORANGE, WHITE, YELLOW, Line, Span
 from ramtek_emu.video.view import PLAIN_VIEW, pixel_at, view_of
 
-GRAY: Final = 0x8C929C
-BLUE: Final = 0x9CC4FF
 PAUSE: Final = "pause"
 """The button that pauses a host, or lets it go on."""
 MARKED: Final = 0x26405F
 """The background of the current instruction."""
 
 
-class Span(NamedTuple):
-    """Text of one color."""
-
-    text: str
-    color: int = WHITE
-    background: int | None = None
-    """The color behind the text; None for that of the page."""
-
-
-Line = tuple[Span, ...]
-
-
-def title(session: InspectionSession) -> Line:
+def title(session: Inspection) -> Line:
     """The position in the stream."""
-    state = session.state
     stream = session.replay.stream
     rest = len(stream.words) - int(stream.ends[-1])
-    parts = [Span(f"instruction {state.number:,} of {state.length:,}", YELLOW)]
-    if state.is_following:
-        parts.append(Span("  running", ORANGE))
-    elif session.host is not None:
-        parts.append(Span("  paused", ORANGE))
+    parts = [Span(f"instruction {session.number:,} of {session.length:,}", YELLOW)]
+    if session.host is not None:
+        parts.append(Span("  running" if session.is_following else "  paused", ORANGE))
     if rest:
         parts.append(Span(f"  {rest} words of the next", GRAY))
     return tuple(parts)
 
 
-def listing(session: InspectionSession) -> list[Line]:
+def listing(session: Inspection) -> list[Line]:
     """The instructions around the current instruction, which is marked."""
-    state = session.state
-    first = min(state.first_listed, state.length)
-    return [
-        listed(session, number)
-        for number in range(first, min(state.length + 1, first + session.listing_rows))
-    ]
+    rows = rows_from(session.replay.stream, session.first_listed, session.listing_rows)
+    return [listed(session, row) for row in rows if row.start <= session.length]
 
 
-def listed(session: InspectionSession, number: int) -> Line:
-    """A row of the listing."""
-    state = session.state
-    is_current, is_written = number == state.number, number in session.written
+def listed(session: Inspection, row: range) -> Line:
+    """A row of the listing; equal polls are a single row."""
+    is_current = session.number in row
+    is_written = any(write.number in row for write in session.writes or ())
+    number = session.number if is_current else row.start
     background = MARKED if is_current else None
     mark = ">" if is_current else "*" if is_written else " "
     number_span = Span(f"{mark}{number:7} ", ORANGE if is_current or is_written else GRAY, background)
     if number == 0:
         return number_span, Span("the start", WHITE if is_current else GRAY, background)
-    name, _, rest = session.meaning(number).partition(" ")
-    is_ahead = number > state.number
-    name_span = Span(f"{name:5} ", GRAY if is_ahead else BLUE, background)
-    return number_span, name_span, Span(rest, GRAY if is_ahead else WHITE, background)
+    name, _, rest = meaning_of(session.replay.stream, row.start).partition(" ")
+    count = f"x {len(row):,}  " if len(row) > 1 else ""
+    is_ahead = number > session.number
+    return (
+        number_span,
+        Span(f"{name:5} ", GRAY if is_ahead else BLUE, background),
+        Span(count, GRAY if is_ahead else YELLOW, background),
+        Span(rest, GRAY if is_ahead else WHITE, background),
+    )
 
 
-def words_of_the_instruction(session: InspectionSession, rows: int, width: int) -> list[Line]:
+def words_of_the_instruction(session: Inspection, rows: int, width: int) -> list[Line]:
     """The current instruction as `ramtek list` lists it, and its reply below, in one row more.
 
     Lines that are longer than `width` characters are wrapped.
     """
-    number = session.state.number
+    number = session.number
     if not number:
         return [(Span("before the first instruction", GRAY),)]
     item = session.replay.stream.item(number)
@@ -106,63 +95,60 @@ def words_of_the_instruction(session: InspectionSession, rows: int, width: int) 
     return lines
 
 
-def parameters(session: InspectionSession) -> list[Line]:
+def parameters(session: Inspection) -> list[Line]:
     """The parameters: gray as after a reset; orange if they have changed since the last position."""
-    display = session.display
-    reset = parameter_texts(Parameters.at_reset(display.configuration))
-    words = {
-        "foreground": display.processor.parameters.foreground,
-        "background": display.processor.parameters.background,
-    }
-    lines: list[Line] = []
-    before = session.state.parameters_before
-    for name, value in values_of(display).items():
-        differs, moved = value != reset.get(name, "0"), value != before.get(name, value)
+    display = display_of(session)
+    reset = texts_at_reset(display.configuration)
+    processor, lines = display.processor.parameters, list[Line]()
+    swatches = {"foreground": processor.foreground, "background": processor.background}
+    for name, value in parameter_texts(display).items():
+        differs, moved = value != reset[name], value != session.before.get(name, value)
         color = ORANGE if moved else WHITE if differs else GRAY
-        line = Span(f"{name:12}", GRAY), Span(f"{'*' if differs else ' '}{value}", color)
-        swatch = (Span(" "), word_spans(session, words[name])[0]) if name in words else ()
+        line = Span(f"{name:13}", GRAY), Span(f"{'*' if differs else ' '}{value}", color)
+        swatch = (Span(" "), word_spans(session, swatches[name])[0]) if name in swatches else ()
         lines.append((*line, *swatch))
     return lines
 
 
-def cursors(session: InspectionSession) -> list[Line]:
+@lru_cache(8)
+def texts_at_reset(configuration: Configuration) -> dict[str, str]:
+    """The values of the parameters after a reset."""
+    return parameter_texts(Ramtek9300(configuration))
+
+
+def cursors(session: Inspection) -> list[Line]:
     """A line for each cursor: its place, and what is on; the joystick's switches in the first."""
     lines: list[Line] = []
-    unit = session.display.cursors
-    for number, cursor in enumerate(unit.all):
-        states = [
-            name
-            for name, is_on in (
-                ("visible", cursor.is_visible),
-                ("blinks", cursor.blinks),
-                ("ENTER", cursor.enter),
-                ("TRACK", unit.track and not number),
-            )
-            if is_on
-        ]
-        color = WHITE if states else GRAY
-        text = f"{cursor.element},{cursor.line} {' '.join(states)}"
-        lines.append((Span(f"cursor {number}     ", GRAY), Span(text, color)))
+    state = display_of(session).state()["cursors"]
+    for number, cursor in enumerate(state["cursors"]):
+        switches = {
+            "visible": cursor["state"] & VISIBLE,
+            "blinks": cursor["state"] & BLINK,
+            "ENTER": cursor["enter"],
+            "TRACK": state["track"] and not number,
+        }
+        on = " ".join(name for name, is_on in switches.items() if is_on)
+        text = Span(f"{cursor['element']},{cursor['line']} {on}", WHITE if on else GRAY)
+        lines.append((Span(f"cursor {number}      ", GRAY), text))
     return lines
 
 
-def pixels(session: InspectionSession) -> list[Line]:
+def pixels(session: Inspection) -> list[Line]:
     """The pixel or entry under the pointer, the selection, and, in another view, the place on the screen."""
-    state = session.state
     lines: list[Line] = []
     view: list[Line] = []
-    if state.pointed_entry is not None:
-        lines.append((Span("pointer   ", YELLOW), *entry_spans(session, state.pointed_entry)))
-    elif state.pointer is not None:
-        display = session.display
+    if session.pointed_entry is not None:
+        lines.append((Span("pointer   ", YELLOW), *entry_spans(session, session.pointed_entry)))
+    elif session.pointer is not None:
+        display = display_of(session)
         parameters = display.processor.parameters
-        element, line = pixel_at(parameters, display.configuration, *state.pointer)
+        element, line = pixel_at(parameters, display.configuration, *session.pointer)
         lines.append((Span("pointer   ", YELLOW), *pixel_spans(session, element, line)))
         if view_of(parameters) != PLAIN_VIEW:
-            view = [(Span(f"screen    {state.pointer.element},{state.pointer.line}", GRAY),)]
+            view = [(Span(f"screen    {session.pointer.element},{session.pointer.line}", GRAY),)]
     else:
         lines.append((Span("pointer", YELLOW),))
-    selection = state.selection
+    selection = session.selection
     if isinstance(selection, EntryRange) and selection.end - selection.first == 1:
         lines.append((Span("selected  ", YELLOW), *entry_spans(session, selection.first)))
     elif isinstance(selection, Window) and selection.width == selection.height == 1:
@@ -174,56 +160,54 @@ def pixels(session: InspectionSession) -> list[Line]:
     return lines + view
 
 
-def pixel_spans(session: InspectionSession, element: int, line: int) -> Line:
+def pixel_spans(session: Inspection, element: int, line: int) -> Line:
     """A pixel of the memory: place, word, entry and color."""
-    word = int(session.display.words[line, element])
-    first = session.display.scan_out.first_entry
+    word = int(display_of(session).words[line, element])
+    first = display_of(session).scan_out.first_entry
     return (
         Span(f"{element},{line}  word {word:04X} = {word}  entry {first + word} "),
         *word_spans(session, word),
     )
 
 
-def entry_spans(session: InspectionSession, entry: int) -> Line:
+def entry_spans(session: Inspection, entry: int) -> Line:
     """An entry of the lookup table: number and color."""
-    return Span(f"entry {entry} "), *color_spans(int(session.display.lookup_table.packed[entry]))
+    return Span(f"entry {entry} "), *color_spans(int(display_of(session).lookup_table.packed[entry]))
 
 
-def word_spans(session: InspectionSession, word: int) -> Line:
+def word_spans(session: Inspection, word: int) -> Line:
     """The color that a word is shown in."""
-    table = session.display.scan_out.table()
+    table = display_of(session).scan_out.table()
     return color_spans(int(table[word % len(table)]))
 
 
-def history_title(session: InspectionSession) -> Line:
+def history_title(session: Inspection) -> Line:
     """What the history is about."""
-    state = session.state
-    if state.writes is None or state.selection is None:
+    if session.writes is None or session.selection is None:
         return (
             Span("history", YELLOW),
             Span("  click a pixel, or an entry on the page of entries", GRAY),
         )
-    count = len(state.writes)
-    text = f"history of {selection_text(state.selection)}: {count:,} write{'' if count == 1 else 's'}"
-    until = "" if state.writes_until == state.length else f" up to instruction {state.writes_until:,}"
+    count = len(session.writes)
+    text = f"history of {selection_text(session.selection)}: {count:,} write{'' if count == 1 else 's'}"
+    until = "" if session.writes_until == session.length else f" up to instruction {session.writes_until:,}"
     return Span(text, YELLOW), Span(until, GRAY)
 
 
-def history(session: InspectionSession) -> list[Line]:
+def history(session: Inspection) -> list[Line]:
     """The instructions that wrote the selected pixel or entry: the word or color before and after."""
-    state = session.state
-    writes = (state.writes or ())[state.first_write : state.first_write + session.history_rows]
+    writes = (session.writes or ())[session.first_write : session.first_write + session.history_rows]
     return [write_line(session, write) for write in writes]
 
 
-def write_line(session: InspectionSession, write: Write) -> Line:
+def write_line(session: Inspection, write: Write) -> Line:
     """A row of the history."""
-    is_current = write.number == session.state.number
+    is_current = write.number == session.number
     background = MARKED if is_current else None
-    if isinstance(session.state.selection, EntryRange):
+    if isinstance(session.selection, EntryRange):
         pairs = [(f"#{color:06X}", color) for color in (write.before, write.after)]
     else:
-        table = session.display.scan_out.table()
+        table = display_of(session).scan_out.table()
         pairs = [(f"{word:04X}", int(table[word % len(table)])) for word in (write.before, write.after)]
     (before, old), (after, new) = pairs
     return (
@@ -231,28 +215,30 @@ def write_line(session: InspectionSession, write: Write) -> Line:
         Span("  ", WHITE, old),
         Span(f" to {after} ", WHITE, background),
         Span("  ", WHITE, new),
-        Span(f"  {session.meaning(write.number)}", WHITE if is_current else GRAY, background),
+        Span(
+            f"  {meaning_of(session.replay.stream, write.number)}", WHITE if is_current else GRAY, background
+        ),
     )
 
 
-def status(session: InspectionSession) -> Line:
+def status(session: Inspection) -> Line:
     """The prompt, the message, or how far the preparation is."""
-    state = session.state
-    if state.prompt:
-        asked = "go to instruction" if state.prompt == "instruction" else "go to the next (name, or Enter)"
-        return Span(f"{asked}: ", YELLOW), Span(state.typed), Span("_", ORANGE)
-    if state.message:
-        return (Span(state.message, ORANGE),)
-    if state.number != state.target:
-        return (Span(f"preparing {state.prepared:,} of {state.target:,} ... Esc stops", ORANGE),)
-    if session.host is None and state.prepared < state.length:
-        return (Span(f"preparing {100 * state.prepared // state.length} %", GRAY),)
+    if session.prompt:
+        asked = "go to instruction" if session.prompt == "instruction" else "find, with Enter or Shift+Enter"
+        more = (Span(f"  {session.message}", ORANGE),) if session.message else ()
+        return Span(f"{asked}: ", YELLOW), Span(session.typed), Span("_", ORANGE), *more
+    if session.message:
+        return (Span(session.message, ORANGE),)
+    if session.number != session.target:
+        return (Span(f"preparing {session.prepared:,} of {session.target:,} ... Esc stops", ORANGE),)
+    if session.host is None and session.prepared < session.length:
+        return (Span(f"preparing {100 * session.prepared // session.length} %", GRAY),)
     return ()
 
 
-def button_text(session: InspectionSession, button: str) -> str:
+def button_text(session: Inspection, button: str) -> str:
     """The text of a button: "pause" reads "go on" while a host waits."""
-    return "go on" if button == PAUSE and not session.state.is_following else button
+    return "go on" if button == PAUSE and not session.is_following else button
 
 
 def wrapped(lines: Iterable[str], width: int) -> Iterator[str]:

@@ -1,10 +1,8 @@
-"""Session: an inspection of a stream, as plain values; no window is needed.
+"""Session: an inspection of a stream as a plain value, and functions that return the next value.
 
-A session stands at an instruction: the display shows the state after it. The user steps, searches, selects
-pixels or entries, and asks which instructions wrote them. `panels` puts all of it into words.
-
-A session of a running display follows the display, or is paused: then the host waits, and the session goes
-back and forth over the instructions that were executed, and lets the host's next instructions through.
+An inspection stands at an instruction: its replay's display shows the state after it. `panels` puts all of it
+into words. An inspection of a running display follows the display, or is paused: then the host waits, and the
+inspection goes over the instructions that were executed, and lets the host's next instructions through.
 
 Long work, such as the first pass over a stream or a search, is done in pieces by `tick`.
 """
@@ -12,26 +10,21 @@ Long work, such as the first pass over a stream or a search, is done in pieces b
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from ramtek_emu.arrays import Dots
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection import histories
 from ramtek_emu.inspection.histories import Search, Write
+from ramtek_emu.inspection.listing import meaning_of, moved, next_with, pattern_of, rows_from
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
-from ramtek_emu.instruction_set.disassembler import (
-    ListingItem,
-    data_texts,
-    head_text,
-    operand_text,
-)
-from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, FORMATS
-from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.inspection.watching import watched
+from ramtek_emu.instruction_set.disassembler import IN_HEXADECIMAL
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.video.view import pixel_at
 
@@ -39,16 +32,15 @@ FOLLOW_SECONDS: Final = 0.05
 """How often the panels follow a running display, whose field follows at every tick, or a preparation."""
 AT_ONCE: Final = 10
 """So many instructions are executed at once, even if no states are prepared there."""
-MOST_TYPED: Final = 9
-"""The most characters of a number or a name that is typed."""
-LONGEST_MEANING: Final = 200
-"""The most characters of an instruction in the listing."""
-SHOWN_OPERANDS: Final = (
+MOST_TYPED: Final = 60
+"""The most characters of a text that is typed."""
+PAUSED: Final = "paused: the host waits"
+PARAMETERS: Final = (
     "mask", "foreground", "background", "start", "window", "scan_order", "dimensions", "spacing", "texture",
     "write_window", "read_mask", "write_offset", "index_1", "index_2", "origin", "conic", "scale", "function",
-    "base_line", "scroll", "display_class", "image_mode",
+    "base_line", "scroll", "display_class", "image_mode", "zoom", "origin_at_bottom", "font",
 )  # fmt: skip
-"""The operands in the order of the panel."""
+"""The parameters in the order of the panel; two more values of the display follow."""
 
 
 class EntryRange(NamedTuple):
@@ -58,10 +50,23 @@ class EntryRange(NamedTuple):
     end: int
 
 
-@dataclass(frozen=True)
-class SessionState:
-    """Everything that the user has chosen, and what was found."""
+Selection = Window | EntryRange | None
+"""A rectangle of the memory, entries, or nothing."""
 
+
+class Work(NamedTuple):
+    """A search that runs in pieces, and the inspection with its result."""
+
+    search: Search[Any]
+    found: Callable[[Inspection, Any], Inspection]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inspection:
+    """An inspection of the instructions of a replay, or of a running display."""
+
+    replay: Replay
+    host: RunningHost | None = None
     number: int = 0
     """The instruction after which the display is shown; 0 is the start."""
     target: int = 0
@@ -70,16 +75,19 @@ class SessionState:
     """The number of instructions in the stream."""
     prepared: int = 0
     """States are prepared up to this instruction."""
+    written: Dots | None = field(default=None, compare=False)
+    """The (lines, elements) words that the instruction writes, also words that stay the same."""
     is_following: bool = False
     """Whether the session shows a running display as it runs."""
     wanted: int = 0
     """The number of instructions that a paused host may still execute."""
-    awaited: str = ""
-    """What a paused host's instructions are let through for; "" for nothing."""
+    awaited: Callable[[], bool] | None = None
+    """Whether the last instruction is what a paused host's instructions are let through for."""
+    work: Work | None = None
     pointer: Point | None = None
     pointed_entry: int | None = None
     """The entry under the pointer, on the page of entries."""
-    selection: Window | EntryRange | None = None
+    selection: Selection = None
     writes: tuple[Write, ...] | None = None
     """The instructions that wrote the selected pixel or entry, newest first; None if nothing was asked."""
     writes_until: int = 0
@@ -87,471 +95,429 @@ class SessionState:
     page: str = ""
     """"help" or "entries" instead of the field; "" for the field."""
     prompt: str = ""
-    """What is being typed: "instruction" or "opcode"; "" for nothing."""
+    """What is being typed: "instruction" or "text"; "" for nothing."""
     typed: str = ""
+    text: str = ""
+    """The text that was last searched for."""
     message: str = ""
-    search: str = ""
-    """What is being searched for; "" for nothing."""
+    listing_rows: int = 20
+    history_rows: int = 20
+    """The rows of the listing and of the history that are seen."""
     first_listed: int = 0
-    """The first row of the listing."""
+    """The first instruction of the listing."""
     first_write: int = 0
     """The first row of the history."""
-    parameters_before: Mapping[str, str] = field(default_factory=dict)
+    before: Mapping[str, str] = field(default_factory=dict, compare=False)
     """The values of the parameters at the position before; empty while a display runs."""
-    opcode: int | None = None
-    """The opcode that was last searched for."""
+    followed: float = field(default=0.0, compare=False)
+    """When the panels last followed a display or a preparation."""
 
 
-class InspectionSession:
-    """An inspection of the instructions of a replay, or of a running display."""
+def inspection_of(replay: Replay, host: RunningHost | None = None) -> Inspection:
+    """The inspection of a replay where it stands; with a host and its replay, of a running display."""
+    return Inspection(
+        replay=replay, host=host, number=replay.number, target=replay.number, length=len(replay.stream),
+        prepared=replay.prepared, is_following=host is not None,
+    )  # fmt: skip
 
-    def __init__(self, replay: Replay, host: RunningHost | None = None) -> None:
-        """A session of a stream, or, with a host and its replay, of a running display."""
-        self.replay = replay
-        self.host = host
-        self.state = SessionState(
-            number=replay.number,
-            target=replay.number,
-            length=len(replay.stream),
-            prepared=replay.prepared,
-            is_following=host is not None,
-        )
-        self.listing_rows = self.history_rows = 20
-        """The rows of the listing and of the history that are seen."""
-        self._search: Search[Any] | None = None
-        self._found: Callable[[Any], None] = lambda _: None
-        self._is_awaited: Callable[[], bool] = lambda: False
-        self._last_followed = 0.0
-        self.written: frozenset[int] = frozenset()
-        """The instructions of the history."""
-        self.meaning = lru_cache(4096)(lambda number: meaning_of(self.replay.stream.item(number)))
-        """The right side of an instruction's listing, by its number."""
 
-    # The display and the position.
+# The display and the position.
 
-    @property
-    def display(self) -> Ramtek9300:
-        """The display at the current instruction: the running display itself at the end of its stream."""
-        if self.host is not None and (self.state.is_following or self.state.number == self.state.length):
-            return self.host.display
-        return self.replay.display
 
-    @property
-    def is_busy(self) -> bool:
-        """Whether a tick has work to do, or waits for a host itself."""
-        state, host = self.state, self.host
-        if host is not None and (state.is_following or state.wanted or state.awaited) and host.is_connected():
-            return True
-        is_prepared = self.host is not None or state.prepared >= state.length
-        return bool(state.search) or state.number != state.target or not is_prepared
+def display_of(session: Inspection) -> Ramtek9300:
+    """The display at the current instruction: the running display itself at the end of its stream."""
+    host = session.host
+    if host is not None and (session.is_following or session.number == session.length):
+        return host.display
+    return session.replay.display
 
-    def set_rows(self, listing: int, history: int) -> None:
-        """Set how many rows of the listing and of the history are seen."""
-        self.listing_rows, self.history_rows = listing, history
-        self._change(first_listed=self._listed_with(self.state.number))
 
-    def _change(self, **changes: Any) -> None:
-        self.state = replace(self.state, **changes)
+def is_busy(session: Inspection) -> bool:
+    """Whether a tick has work to do, or waits for a host itself."""
+    host = session.host
+    waits = session.is_following or session.wanted or session.awaited
+    if host is not None and waits and host.is_connected():
+        return True
+    is_prepared = host is not None or session.prepared >= session.length
+    return session.work is not None or session.number != session.target or not is_prepared
 
-    def go(self, number: int) -> None:
-        """Go to an instruction: at once if states are prepared, otherwise as soon as they are."""
-        self.pause()
-        self.stop_search()
-        number = min(max(number, 0), self.state.length)
-        first = self._listed_with(number)
-        self._change(target=number, wanted=0, awaited="", message="", first_listed=first)
-        self._arrive()
 
-    def step(self, count: int) -> None:
-        """Go forward, or back, by some instructions; at its end a paused host executes them."""
-        if self.host is not None and not self.state.is_following and count > 0:
-            left = self.state.length - self.state.target
-            if count > left:
-                self.go(self.state.length)
-                self._change(wanted=count - left, message="waiting for the host's next instruction")
-                return
-        self.go(self.state.target + count)
+def with_rows(session: Inspection, listing: int, history: int) -> Inspection:
+    """The inspection with so many rows of the listing and of the history on its page."""
+    session = replace(session, listing_rows=listing, history_rows=history)
+    return replace(session, first_listed=_first_listed(session, session.number))
 
-    def _arrive(self) -> None:
-        """Go to the target if that takes a moment."""
-        state = self.state
-        ahead = state.target - self.replay.number
-        if self.host is None and state.target > self.replay.prepared and not 0 <= ahead <= AT_ONCE:
-            return
-        if state.number != state.target:
-            self._change(parameters_before=values_of(self.display))
-        self.replay.go_to(state.target)
-        self._change(number=state.target, prepared=self.replay.prepared)
 
-    def _listed_with(self, number: int) -> int:
-        """The first row of the listing that shows an instruction with some neighbors."""
-        first, rows = self.state.first_listed, self.listing_rows
-        if first + 3 <= number < first + rows - 3:
-            return first
-        return max(0, min(number - rows // 3, self.state.length + 1 - rows))
+def go(session: Inspection, number: int) -> Inspection:
+    """Go to an instruction: at once if states are prepared, otherwise as soon as they are."""
+    session = stopped(pause(session))
+    number = min(max(number, 0), session.length)
+    first = _first_listed(session, number)
+    session = replace(session, target=number, wanted=0, awaited=None, message="", first_listed=first)
+    return _arrived(session)
 
-    # Work in pieces.
 
-    def tick(self) -> None:
-        """Do a piece of the waiting work; it takes some milliseconds at most."""
-        if self.host is not None:
-            self._serve(self.host)
-        # A search begins where the session stands.
-        if self._search is not None and self.state.number == self.state.target:
-            self._go_on_searching(self._search)
-            return
-        # The states of a running display are kept while it runs.
-        if self.host is None and self.state.prepared < self.state.length:
-            is_done, now = not self.replay.prepare_for(PIECE_SECONDS), time.monotonic()
-            if is_done or now - self._last_followed > FOLLOW_SECONDS:
-                self._last_followed = now
-                self._change(prepared=self.replay.prepared)
-        if self.state.number != self.state.target:
-            self._arrive()
+def step(session: Inspection, count: int) -> Inspection:
+    """Go forward, or back, by some instructions; at its end a paused host executes them."""
+    left = session.length - session.target
+    if session.host is not None and not session.is_following and count > left:
+        message = "waiting for the host's next instruction"
+        return replace(go(session, session.length), wanted=count - left, message=message)
+    return go(session, session.target + count)
 
-    def _serve(self, host: RunningHost) -> None:
-        """Serve the host, and stand at its last instruction unless it is stopped."""
-        state = self.state
-        if state.awaited:
-            self._serve_until_awaited(host)
-            return
-        host.serve(None if state.is_following else state.wanted)
-        if host.replay is not self.replay:
-            self._begin_anew(host.replay)
-            return
-        length, now = len(self.replay.stream), time.monotonic()
-        if length == state.length:
-            return
-        if state.is_following:
-            if now - self._last_followed > FOLLOW_SECONDS:
-                self._last_followed = now
-                self._stand_at_the_end(length)
-        else:
-            wanted = max(0, state.wanted - (length - state.length))
-            self._stand_at_the_end(length)
-            self.replay.go_to(length)
-            self._change(wanted=wanted, message=state.message if wanted else "")
 
-    def _await(self, what: str, is_awaited: Callable[[], bool]) -> None:
-        """Let a paused host's instructions through until `is_awaited()` is true after one of them."""
-        self.go(self.state.length)
-        self._is_awaited = is_awaited
-        self._change(awaited=what, message=f"waiting for the host: {what} ... Esc stops")
+def _arrived(session: Inspection) -> Inspection:
+    """The inspection at its target, if going there takes a moment."""
+    replay, ahead = session.replay, session.target - session.replay.number
+    if session.host is None and session.target > replay.prepared and not 0 <= ahead <= AT_ONCE:
+        return session
+    return _standing(session, session.target)
 
-    def _serve_until_awaited(self, host: RunningHost) -> None:
-        """Let instructions through for some milliseconds, one after the other."""
-        end, is_reached = time.monotonic() + PIECE_SECONDS, False
+
+def _standing(session: Inspection, number: int) -> Inspection:
+    """The inspection at an instruction; the words that the instruction writes are noted."""
+    replay = session.replay
+    if session.number == number == replay.number and (session.written is not None or not number):
+        return session
+    before = session.before if number == replay.number else parameter_texts(replay.display)
+    written = None
+    if number:
+        replay.go_to(number - 1)
+        display = replay.display
+        written = watched(display).watch(display.frame_buffer.window)
+        replay.go_to(number)
+        if replay.display is not display:
+            # A state was prepared here, so that the instruction was not executed.
+            display.send(replay.stream.words_between(number - 1, number))
+    else:
+        replay.go_to(0)
+    return replace(
+        session, number=number, target=number, prepared=replay.prepared, written=written, before=before
+    )
+
+
+def _first_listed(session: Inspection, number: int) -> int:
+    """The first instruction of a listing that shows an instruction with some neighbors."""
+    stream, rows = session.replay.stream, session.listing_rows
+    shown = rows_from(stream, session.first_listed, rows)
+    if len(shown) == rows and shown[3].start <= number < shown[-3].start:
+        return session.first_listed
+    return min(moved(stream, number, -(rows // 3)), moved(stream, len(stream), 1 - rows))
+
+
+# Work in pieces.
+
+
+def tick(session: Inspection) -> Inspection:
+    """Do a piece of the waiting work; it takes some milliseconds at most."""
+    if session.host is not None:
+        session = _served(session, session.host)
+    # A search begins where the session stands.
+    if session.work is not None and session.number == session.target:
+        return _worked(session, session.work)
+    # The states of a running display are kept while it runs.
+    if session.host is None and session.prepared < session.length:
+        is_done, now = not session.replay.prepare_for(PIECE_SECONDS), time.monotonic()
+        if is_done or now - session.followed > FOLLOW_SECONDS:
+            session = replace(session, prepared=session.replay.prepared, followed=now)
+    return session if session.number == session.target else _arrived(session)
+
+
+def _served(session: Inspection, host: RunningHost) -> Inspection:
+    """Serve the host, and stand at its last instruction unless it is stopped."""
+    is_reached, end = False, time.monotonic() + PIECE_SECONDS
+    if session.awaited is None:
+        host.serve(None if session.is_following else session.wanted)
+    else:
         while not is_reached and time.monotonic() < end:
-            length = len(self.replay.stream)
+            length = len(host.replay.stream)
             host.serve(1)
-            if len(self.replay.stream) == length:
+            if len(host.replay.stream) == length:
                 break
-            is_reached = self._is_awaited()
-            if host.replay is not self.replay:
-                self._begin_anew(host.replay)
-        length, now = len(self.replay.stream), time.monotonic()
-        if is_reached:
-            self._stand_at_the_end(length)
-            self.replay.go_to(length)
-            self._change(awaited="", message="")
-        elif length != self.state.length and now - self._last_followed > FOLLOW_SECONDS:
-            self._last_followed = now
-            self._stand_at_the_end(length)
-
-    def _begin_anew(self, replay: Replay) -> None:
-        """Follow the running display with another replay, which begins at the display as it is."""
-        self.replay = replay
-        self.meaning.cache_clear()
-        self.select(None)
+            is_reached = session.awaited()
+    if host.replay is not session.replay:
+        meaning_of.cache_clear()
         message = f"the instructions took {MOST_BYTES >> 20} MB of memory: they are counted from here on"
-        self._change(length=0, number=0, target=0, prepared=0, first_listed=0, message=message)
+        session = replace(select(session, None), replay=host.replay, written=None, message=message)
+        session = replace(session, length=0, number=0, target=0, prepared=0, first_listed=0)
+    length, now = len(session.replay.stream), time.monotonic()
+    if is_reached:
+        return replace(_at_the_end(session), awaited=None, message="")
+    if length == session.length:
+        return session
+    if session.is_following or session.awaited is not None:
+        is_due = now - session.followed > FOLLOW_SECONDS
+        return replace(_followed(session), followed=now) if is_due else session
+    wanted = max(0, session.wanted - (length - session.length))
+    return replace(_at_the_end(session), wanted=wanted, message=session.message if wanted else "")
 
-    def _stand_at_the_end(self, length: int) -> None:
-        if self.state.is_following:
-            self._change(parameters_before={})
-        elif self.replay.number == self.state.number != length:
-            # The host has changed its display since, but not the display of the replay.
-            self._change(parameters_before=values_of(self.replay.display))
-        self._change(length=length, number=length, target=length, prepared=self.replay.prepared)
-        self._change(first_listed=self._listed_with(length))
 
-    def pause(self) -> None:
-        """Stop the host of a running display, if it runs."""
-        if self.state.is_following:
-            self._change(is_following=False, message="paused: the host waits")
-            self._stand_at_the_end(len(self.replay.stream))
-            self.replay.go_to(self.state.length)
+def _followed(session: Inspection) -> Inspection:
+    """The inspection at the end of a stream that grows, without the replay, which follows in a pause."""
+    length = len(session.replay.stream)
+    session = replace(session, number=length, target=length, length=length, written=None)
+    return replace(session, first_listed=_first_listed(session, length))
 
-    def go_on(self) -> None:
-        """Let the host of a running display go on, and follow it."""
-        if self.host is not None:
-            self.stop_search()
-            self._change(is_following=True, wanted=0, awaited="", message="")
-            self._stand_at_the_end(len(self.replay.stream))
 
-    def _start(self, what: str, search: Search[Any], found: Callable[[Any], None]) -> None:
-        self._search, self._found = search, found
-        self._change(search=what, message=f"searching for {what} ... Esc stops")
-        if self.state.number == self.state.target:
-            self._go_on_searching(search)
+def _at_the_end(session: Inspection) -> Inspection:
+    return _standing(_followed(session), len(session.replay.stream))
 
-    def _go_on_searching(self, search: Search[Any]) -> None:
-        end = time.monotonic() + PIECE_SECONDS
-        try:
-            next(search)
-            while time.monotonic() < end:
-                next(search)
-        except StopIteration as result:
-            found = self._found
-            self.stop_search()
-            self._change(prepared=self.replay.prepared)
-            found(result.value)
 
-    def stop_search(self) -> None:
-        """Stop the search, if there is one."""
-        if self._search is not None:
-            self._search = None
-            self._change(search="", message="")
+def pause(session: Inspection) -> Inspection:
+    """Stop the host of a running display, if it runs."""
+    if not session.is_following:
+        return session
+    return replace(_at_the_end(replace(session, is_following=False)), before={}, message=PAUSED)
 
-    # Searches.
 
-    def next_opcode(self, opcode: int | None = None, back: bool = False) -> None:
-        """Go to the next instruction with an opcode, or the last one before; None for the last opcode asked.
+def go_on(session: Inspection) -> Inspection:
+    """Let the host of a running display go on, and follow it."""
+    if session.host is None:
+        return session
+    session = replace(stopped(session), is_following=True, wanted=0, awaited=None, message="", before={})
+    return _followed(session)
 
-        At first, None is the opcode of the current instruction. At the end of what a paused host has sent,
-        its instructions are let through until the opcode.
-        """
-        self.pause()
-        state = self.state
-        if opcode is None:
-            opcode = state.opcode
-        if opcode is None:
-            if not state.target:
-                self._change(message="an opcode is searched for from an instruction, or after O and its name")
-                return
-            opcode = int(self.replay.stream.opcodes[state.target - 1])
-        self._change(opcode=opcode)
-        opcodes = self.replay.stream.opcodes
-        if back:
-            places = np.flatnonzero(opcodes[: max(0, state.target - 1)] == opcode)[-1:]
-        else:
-            places = state.target + np.flatnonzero(opcodes[state.target :] == opcode)[:1]
-        if len(places):
-            self.go(int(places[0]) + 1)
-        elif self.host is not None and not back:
-            self._await(name_of(opcode), lambda: self._last_opcode() == opcode)
-        else:
-            where = "before" if back else "after"
-            self._change(message=f"no {name_of(opcode)} {where} instruction {state.target:,}")
 
-    def _last_opcode(self) -> int:
-        """The opcode of the last instruction of the stream."""
-        stream = self.replay.stream
-        return int(stream.words[stream.ends[-2]]) >> 8
+def _started(session: Inspection, what: str, work: Work) -> Inspection:
+    session = replace(session, work=work, message=f"searching for {what} ... Esc stops")
+    return _worked(session, work) if session.number == session.target else session
 
-    def next_change(self) -> None:
-        """Go to the next instruction that changes a selected pixel, rectangle or entry.
 
-        At the end of what a paused host has sent, its instructions are let through until such a change.
-        """
-        self.pause()
-        selection = self.state.selection
-        if selection is None:
-            self._change(message="drag a rectangle on the field, or click a pixel or an entry first")
-            return
-        after, host = self.state.target, self.host
-        if isinstance(selection, EntryRange):
-            search = histories.next_entry_change(self.replay, selection.first, selection.end, after)
-        else:
-            search = histories.next_change(self.replay, selection, after)
+def _worked(session: Inspection, work: Work) -> Inspection:
+    end = time.monotonic() + PIECE_SECONDS
+    try:
+        next(work.search)
+        while time.monotonic() < end:
+            next(work.search)
+    except StopIteration as result:
+        return work.found(replace(stopped(session), prepared=session.replay.prepared), result.value)
+    return session
 
-        def found(number: int | None) -> None:
-            if number is not None:
-                self.go(number)
-            elif host is not None:
-                before = selected_values(host.display, selection)
-                what = f"a change of {selection_text(selection)}"
-                self._await(what, lambda: selected_values(host.display, selection) != before)
-            else:
-                self._change(message=f"{selection_text(selection)}: no change after instruction {after:,}")
 
-        self._start(f"a change of {selection_text(selection)}", search, found)
+def stopped(session: Inspection) -> Inspection:
+    """The inspection without its search, if there is one."""
+    return session if session.work is None else replace(session, work=None, message="")
 
-    def select(self, selection: Window | EntryRange | None, is_final: bool = True) -> None:
-        """Select a rectangle of the memory, entries, or nothing.
 
-        If the selection is final, the history of a single pixel or entry is searched for.
-        """
-        self.stop_search()
-        self.written = frozenset()
-        self._change(selection=selection, writes=None, first_write=0, message="")
-        if not is_final or selection is None:
-            return
-        self.pause()
-        until, what = self.state.target, f"writes of {selection_text(selection)}"
-        self._change(writes_until=until)
-        if isinstance(selection, EntryRange):
-            if selection.end - selection.first == 1:
-                search = histories.writes_to_entry(self.replay, selection.first, until)
-                self._start(what, search, self._show_writes)
-        elif selection.width == selection.height == 1:
-            search = histories.writes_to_pixel(self.replay, selection.top, selection.left, until)
-            self._start(what, search, self._show_writes)
+def _awaiting(session: Inspection, what: str, is_reached: Callable[[], bool]) -> Inspection:
+    """Let a paused host's instructions through until `is_reached()` is true after one of them."""
+    message = f"waiting for the host: {what} ... Esc stops"
+    return replace(go(session, session.length), awaited=is_reached, message=message)
 
-    def _show_writes(self, writes: Sequence[Write]) -> None:
-        self.written = frozenset(write.number for write in writes)
-        self._change(writes=tuple(reversed(writes)), message="")
 
-    def next_write(self, back: bool) -> None:
-        """Go to the next older, or newer, instruction of the history."""
-        numbers = [write.number for write in self.state.writes or ()]
-        if back:
-            numbers = [number for number in numbers if number < self.state.number][:1]
-        else:
-            numbers = [number for number in numbers if number > self.state.number][-1:]
-        if numbers:
-            self.go(numbers[0])
-        elif self.state.writes is None:
-            self._change(message="click a pixel or an entry first")
-        else:
-            self._change(message=f"no {'earlier' if back else 'later'} instruction in the history")
+# Searches.
 
-    # What the user does.
 
-    def takes(self, text: str) -> bool:
-        """Whether the prompt takes a character: digits for an instruction, letters too for an opcode."""
-        prompt = self.state.prompt
-        return prompt != "" and text.isascii() and (text.isdigit() or (prompt == "opcode" and text.isalpha()))
+def find(session: Inspection, back: bool = False) -> Inspection:
+    """Go to the next instruction whose row of the listing has the typed text, or to the last one before.
 
-    def type(self, text: str) -> None:
-        """Add a character to the number or the name that is being typed."""
-        self._change(typed=(self.state.typed + text.upper())[:MOST_TYPED], message="")
+    At the end of what a paused host has sent, its instructions are let through until one has the text.
+    """
+    text = session.typed.strip() if session.prompt == "text" and session.typed.strip() else session.text
+    session = replace(pause(session), text=text)
+    if not text:
+        return replace(session, message="type a text of the listing first, such as FORE=7 or WI WIN=")
+    target, stream, host = session.target, session.replay.stream, session.host
+    numbers = range(target - 1, 0, -1) if back else range(target + 1, session.length + 1)
 
-    def ask(self, prompt: str, typed: str = "") -> None:
-        """Begin to type an instruction's number or an opcode."""
-        self._change(prompt=prompt, typed=typed, message="")
+    def found(session: Inspection, number: int | None) -> Inspection:
+        if number is not None:
+            return go(session, number)
+        if host is not None and not back:
+            pattern = pattern_of(text)
 
-    def erase_typed(self) -> None:
-        """Erase the last typed character."""
-        self._change(typed=self.state.typed[:-1])
+            def is_reached() -> bool:
+                stream = host.replay.stream
+                return len(stream) > 0 and pattern.search(meaning_of(stream, len(stream))) is not None
 
-    def enter(self) -> None:
-        """Go to the instruction, or to the next of the opcode, that was typed."""
-        prompt, typed = self.state.prompt, self.state.typed
-        self._change(prompt="", typed="")
-        if prompt == "instruction" and typed:
-            self.go(int(typed))
-        elif prompt == "opcode":
-            opcode = opcode_of(typed)
-            if typed and opcode is None:
-                self._change(message=f"an opcode must be a name such as WI, or two digits, not {typed}")
-            else:
-                self.next_opcode(opcode)
+            return _awaiting(session, text, is_reached)
+        where = "before" if back else "after"
+        return replace(session, message=f"no {text} {where} instruction {target:,}")
 
-    def escape(self) -> None:
-        """Leave what was begun last: typing, a search, waiting, a page, the selection."""
-        state = self.state
-        if state.prompt:
-            self._change(prompt="", typed="")
-        elif state.search:
-            self.stop_search()
-        elif state.wanted or state.awaited:
-            self._change(wanted=0, awaited="", message="paused: the host waits")
-        elif state.number != state.target:
-            self._change(target=state.number, first_listed=self._listed_with(state.number), message="")
-        elif state.page:
-            self.turn_to(state.page)
-        else:
-            self.select(None)
+    return _started(session, text, Work(next_with(stream, text, numbers), found))
 
-    def tell(self, message: str) -> None:
-        """Show a message; "" removes it."""
-        self._change(message=message)
 
-    def turn_to(self, page: str) -> None:
-        """Show a page, or the field if the page is shown already."""
-        self._change(page="" if self.state.page == page else page, pointed_entry=None, pointer=None)
+def next_change(session: Inspection, back: bool = False) -> Inspection:
+    """Go to the next instruction that changes a selected pixel, rectangle or entry, or to the last before.
 
-    def point_at(self, place: Point | None = None, entry: int | None = None) -> None:
-        """Note the place of the screen, or the entry, under the pointer."""
-        self._change(pointer=place, pointed_entry=entry)
-
-    def scroll_listing(self, rows: int) -> None:
-        """Move the listing, and stay at the current instruction."""
-        last = max(0, self.state.length + 1 - self.listing_rows)
-        self._change(first_listed=min(max(0, self.state.first_listed + rows), last))
-
-    def scroll_history(self, rows: int) -> None:
-        """Move the history."""
-        last = max(0, len(self.state.writes or ()) - self.history_rows)
-        self._change(first_write=min(max(0, self.state.first_write + rows), last))
-
-    def click_listing(self, row: int) -> None:
-        """Go to the instruction in a row of the listing."""
-        if (number := self.state.first_listed + row) <= self.state.length:
-            self.go(number)
-
-    def click_history(self, row: int) -> None:
-        """Go to the instruction in a row of the history."""
-        writes = self.state.writes or ()
-        if (row := row + self.state.first_write) < len(writes):
-            self.go(writes[row].number)
-
-    def memory_window(self, first: Point, last: Point) -> Window:
-        """The rectangle of the memory that is seen between two places of the screen.
-
-        If the view wraps around an edge of the memory between them, the rectangle ends at that edge.
-        """
-        display = self.display
-        parameters, configuration = display.processor.parameters, display.configuration
-        left, right = sorted((first.element, last.element))
-        top, bottom = sorted((first.line, last.line))
-        elements, lines = pixel_at(
-            parameters, configuration, np.arange(left, right + 1), np.arange(top, bottom + 1)
-        )
-        if parameters.origin_at_bottom:
-            lines = lines[::-1]
-        first_element, first_line = int(elements[0]), int(lines[0])
-        return Window(
-            first_element,
-            first_line,
-            int(elements[elements >= first_element].max()),
-            int(lines[lines >= first_line].max()),
+    At the end of what a paused host has sent, its instructions are let through until such a change.
+    """
+    session = pause(session)
+    selection, target, host = session.selection, session.target, session.host
+    if selection is None:
+        return tell(session, "drag a rectangle on the field, or click a pixel or an entry first")
+    if isinstance(selection, EntryRange):
+        search = histories.next_entry_change if not back else histories.last_entry_change
+        changes = search(session.replay, selection.first, selection.end, target)
+    else:
+        changes = (histories.last_change if back else histories.next_change)(
+            session.replay, selection, target
         )
 
+    def found(session: Inspection, number: int | None) -> Inspection:
+        if number is not None:
+            return go(session, number)
+        if host is not None and not back:
+            values = selected_values(host.display, selection)
+            what = f"a change of {selection_text(selection)}"
+            return _awaiting(session, what, lambda: selected_values(host.display, selection) != values)
+        where = "before" if back else "after"
+        return tell(session, f"{selection_text(selection)}: no change {where} instruction {target:,}")
 
-def meaning_of(item: ListingItem) -> str:
-    """The right side of an item of a listing in one line, cut after LONGEST_MEANING characters."""
-    if item.instruction is None:
-        words = " ".join(f"{word:04X}" for word in item.words[:8].tolist())
-        return f"raw {words} ; {item.note}"
-    text = head_text(item.instruction)
-    for _, data in data_texts(item.instruction):
-        text += f"  {data}"
-        if len(text) > LONGEST_MEANING:
-            break
-    return text[:LONGEST_MEANING]
-
-
-def parameter_texts(parameters: Parameters) -> dict[str, str]:
-    """The values of parameters by their names, as the listing writes operands; three columns of nine."""
-    texts = {name: operand_text(name, parameters.operand(name)) for name in SHOWN_OPERANDS if name != "conic"}
-    texts |= {
-        "conic": ",".join(map(str, parameters.conic)),
-        "zoom": ",".join(map(str, parameters.zoom)),
-        "video origin": "bottom" if parameters.origin_at_bottom else "top",
-        "font": str(parameters.font),
-    }
-    order = *SHOWN_OPERANDS, "zoom", "video origin", "font"
-    return {name.replace("_", " ").removeprefix("display "): texts[name] for name in order}
+    return _started(session, f"a change of {selection_text(selection)}", Work(changes, found))
 
 
-def values_of(display: Ramtek9300) -> dict[str, str]:
-    """The values of a display's parameters by their names, and two more numbers."""
-    return parameter_texts(display.processor.parameters) | {
-        "saved": str(len(display.processor.saved)),
-        "next entry": str(display.lookup_table.addressed_entry),
-    }
+def select(session: Inspection, selection: Selection, is_final: bool = True) -> Inspection:
+    """Select a rectangle of the memory, entries, or nothing.
+
+    If the selection is final, the history of a single pixel or entry is searched for.
+    """
+    session = replace(stopped(session), selection=selection, writes=None, first_write=0, message="")
+    if not is_final or selection is None:
+        return session
+    session = pause(session)
+    until = session.target
+    session = replace(session, writes_until=until)
+    if isinstance(selection, EntryRange):
+        is_single = selection.end - selection.first == 1
+        search = histories.writes_to_entry(session.replay, selection.first, until)
+    else:
+        is_single = selection.width == selection.height == 1
+        search = histories.writes_to_pixel(session.replay, selection.top, selection.left, until)
+    if not is_single:
+        return session
+
+    def found(session: Inspection, writes: Sequence[Write]) -> Inspection:
+        return replace(session, writes=tuple(reversed(writes)), message="")
+
+    return _started(session, f"writes of {selection_text(selection)}", Work(search, found))
+
+
+def next_write(session: Inspection, back: bool) -> Inspection:
+    """Go to the next older, or newer, instruction of the history."""
+    if session.writes is None:
+        return tell(session, "click a pixel or an entry first")
+    numbers = [write.number for write in session.writes]
+    if back:
+        numbers = [number for number in numbers if number < session.number][:1]
+    else:
+        numbers = [number for number in numbers if number > session.number][-1:]
+    if numbers:
+        return go(session, numbers[0])
+    return tell(session, f"no {'earlier' if back else 'later'} instruction in the history")
+
+
+# What the user does.
+
+
+def takes(session: Inspection, text: str) -> bool:
+    """Whether the prompt takes a character: digits for an instruction, all for a text of the listing."""
+    if session.prompt == "instruction":
+        return text.isascii() and text.isdigit()
+    return session.prompt == "text" and text.isprintable() and text != ""
+
+
+def ask(session: Inspection, prompt: str, typed: str = "") -> Inspection:
+    """Begin, or go on, to type an instruction's number or a text."""
+    return replace(session, prompt=prompt, typed=typed[:MOST_TYPED], message="")
+
+
+def enter(session: Inspection, back: bool = False) -> Inspection:
+    """Go to the instruction that was typed; else find the text, whose prompt stays."""
+    if session.prompt != "instruction":
+        return find(session, back)
+    typed = session.typed
+    session = replace(session, prompt="", typed="")
+    return go(session, int(typed)) if typed else session
+
+
+def escape(session: Inspection) -> Inspection:
+    """Leave what was begun last: a search, waiting, typing, a page, the selection."""
+    if session.work is not None:
+        return stopped(session)
+    if session.wanted or session.awaited is not None:
+        return replace(session, wanted=0, awaited=None, message=PAUSED)
+    if session.number != session.target:
+        first = _first_listed(session, session.number)
+        return replace(session, target=session.number, first_listed=first, message="")
+    if session.prompt:
+        return replace(session, prompt="", typed="", message="")
+    return turn_to(session, session.page) if session.page else select(session, None)
+
+
+def tell(session: Inspection, message: str) -> Inspection:
+    """Show a message; "" removes it."""
+    return replace(session, message=message)
+
+
+def turn_to(session: Inspection, page: str) -> Inspection:
+    """Show a page, or the field if the page is shown already."""
+    return replace(session, page="" if session.page == page else page, pointed_entry=None, pointer=None)
+
+
+def scroll_listing(session: Inspection, rows: int) -> Inspection:
+    """Move the listing, and stay at the current instruction."""
+    stream = session.replay.stream
+    last = moved(stream, len(stream), 1 - session.listing_rows)
+    return replace(session, first_listed=min(moved(stream, session.first_listed, rows), last))
+
+
+def scroll_history(session: Inspection, rows: int) -> Inspection:
+    """Move the history."""
+    last = max(0, len(session.writes or ()) - session.history_rows)
+    return replace(session, first_write=min(max(0, session.first_write + rows), last))
+
+
+def click_listing(session: Inspection, row: int) -> Inspection:
+    """Go to the instruction in a row of the listing."""
+    rows = rows_from(session.replay.stream, session.first_listed, row + 1)
+    return go(session, rows[row].start) if row < len(rows) else session
+
+
+def click_history(session: Inspection, row: int) -> Inspection:
+    """Go to the instruction in a row of the history."""
+    writes = (session.writes or ())[session.first_write :]
+    return go(session, writes[row].number) if row < len(writes) else session
+
+
+def shown_pixels(display: Ramtek9300) -> tuple[Any, Any]:
+    """The elements of the memory that are seen from left to right, and the lines from top to bottom."""
+    sizes, parameters = display.configuration, display.processor.parameters
+    return pixel_at(parameters, sizes, np.arange(sizes.shown_elements), np.arange(sizes.shown_lines))
+
+
+def memory_window(display: Ramtek9300, first: Point, last: Point) -> Window:
+    """The rectangle of the memory that is seen between two places of the screen.
+
+    If the view wraps around an edge of the memory between them, the rectangle ends at that edge.
+    """
+    elements, lines = shown_pixels(display)
+    left, right = sorted((first.element, last.element))
+    top, bottom = sorted((first.line, last.line))
+    elements, lines = elements[left : right + 1], lines[top : bottom + 1]
+    if display.processor.parameters.origin_at_bottom:
+        lines = lines[::-1]
+    ends = (int(places[places >= places[0]].max()) for places in (elements, lines))
+    return Window(int(elements[0]), int(lines[0]), *ends)
+
+
+def parameter_texts(display: Ramtek9300) -> dict[str, str]:
+    """The values of a display's parameters by their names, as the listing writes operands."""
+    state = display.state()
+    values = {name: state["parameters"][name] for name in PARAMETERS}
+    values |= {"saved": len(state["processor"]["saved"])}
+    values |= {"next entry": state["lookup_table"]["table_address"]}
+    return {name.replace("_", " "): value_text(name, value) for name, value in values.items()}
+
+
+def value_text(name: str, value: Any) -> str:
+    """The text of a parameter: masks and bits in hexadecimal, a window by its corners."""
+    numbers = value if isinstance(value, tuple) else (int(value),)
+    if name in IN_HEXADECIMAL and name != "conic":
+        return ",".join(f"0x{number:04X}" for number in numbers)
+    if isinstance(value, Window):
+        return "{},{}..{},{}".format(*value)
+    return ",".join(map(str, numbers))
 
 
 def selected_values(display: Ramtek9300, selection: Window | EntryRange) -> bytes:
@@ -570,19 +536,3 @@ def selection_text(selection: Window | EntryRange) -> str:
     if selection.width == selection.height == 1:
         return f"pixel {selection.left},{selection.top}"
     return f"rectangle {selection.left},{selection.top}..{selection.right},{selection.bottom}"
-
-
-def name_of(opcode: int) -> str:
-    """The name of an opcode, or its two hexadecimal digits."""
-    names: Iterable[str] = (format.name for format in FORMATS if format.opcode == opcode)
-    return next(iter(names), f"{opcode:02X}")
-
-
-def opcode_of(name: str) -> int | None:
-    """The opcode of an instruction's name, or of two hexadecimal digits; None if there is none."""
-    if name.upper() in FORMAT_OF_NAME:
-        return FORMAT_OF_NAME[name.upper()].opcode
-    try:
-        return int(name, 16) if len(name) == 2 else None
-    except ValueError:
-        return None
