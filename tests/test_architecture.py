@@ -193,7 +193,7 @@ def test_every_wing_has_its_place_in_the_order() -> None:
 
 def test_a_wing_says_what_it_is_and_imports_nothing() -> None:
     for name, path in MODULES.items():
-        if path.stem == "__init__" and name not in PUBLIC_NAMES:
+        if path.stem == "__init__" and name not in (*PUBLIC_NAMES, "ramtek_emu.inspection"):
             what_it_is, *rest = TREES[name].body
             assert isinstance(what_it_is, ast.Expr), f"{path} must begin with a docstring"
             assert not rest, f"{path} must hold a docstring and nothing else"

@@ -27,7 +27,7 @@ from docs.guides.pictures import GUIDES, write
 from ramtek_emu import Ramtek9300
 from ramtek_emu.inspection.inspector import Inspector
 from ramtek_emu.inspection.replay import Replay
-from ramtek_emu.inspection.session import InspectionSession
+from ramtek_emu.inspection.session import inspection_of, is_busy, tick
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.monitor.input_queue import Key, Pointer
@@ -232,14 +232,14 @@ def inspect_pixel() -> Field:
     blocks = blocks_of((GUIDES / "inspect.md").read_text("utf-8"))
     (listing,) = (block.text for block in blocks if block.text.startswith("; chart.txt"))
     words = np.frombuffer(b"".join(assemble(listing.splitlines())), "<u2")
-    inspector = Inspector(InspectionSession(Replay(Stream(words=words.astype(np.uint16)))))
+    inspector = Inspector(inspection_of(Replay(Stream(words=words.astype(np.uint16)))))
     for key in ("end", "["):
         inspector.press(Key(key))
         if key == "end":
             for action in ("move", "press", "release"):
-                inspector.point(Pointer(500, 300, False, action, 0 if action == "move" else 1))
-        while inspector.session.is_busy:
-            inspector.session.tick()
+                inspector.point(Pointer(502, 302, False, action, 0 if action == "move" else 1))
+        while is_busy(inspector.session):
+            inspector.page.session = tick(inspector.session)
     return inspector.page.colors()
 
 

@@ -238,18 +238,20 @@ BINDINGS: Final = (
         "F", "type a text of the listing, such as FORE=7 or WI WIN=", ("f",),
         lambda session: sessions.ask(session, "text"), "find",
     ),
-    KeyBinding("Enter", "the next instruction with the text", (), sessions.find),
-    KeyBinding("Shift+Enter", "the last one before with the text", (), sessions.find),
+    KeyBinding("(Shift+) Enter", "the next instruction with the text, or the last before", (), sessions.find),
     KeyBinding("C", "the next change of what is selected", ("c",), sessions.next_change, "change"),
     KeyBinding(
         "Shift+C", "the change before of what is selected", ("shift c",),
         lambda session: sessions.next_change(session, back=True),
     ),
     KeyBinding(
-        "[ and ]", "the write before, or after, in the history", ("[",),
+        "[", "the write before, in the history", ("[",),
         lambda session: sessions.next_write(session, back=True),
     ),
-    KeyBinding("", "", ("]",), lambda session: sessions.next_write(session, back=False)),
+    KeyBinding(
+        "]", "the write after, in the history", ("]",),
+        lambda session: sessions.next_write(session, back=False),
+    ),
     KeyBinding(
         "F4", "the entries of the lookup table, and back", ("f4",),
         lambda session: sessions.turn_to(session, "entries"), "entries", True,
@@ -279,9 +281,5 @@ WINDOW_KEYS: Final = tuple(row for row in KEYS if row[0] in ("F3", "F10", "F11, 
 
 def help_rows(is_live: bool) -> list[tuple[str, str]]:
     """The keys and the mouse of an inspector, of a running display if `is_live`, with their actions."""
-    bindings = [
-        (binding.keys_text, binding.help)
-        for binding in BINDINGS
-        if binding.help and (is_live or not binding.is_live)
-    ]
+    bindings = [(binding.keys_text, binding.help) for binding in BINDINGS if is_live or not binding.is_live]
     return [*bindings, *(MOUSE_LIVE if is_live else ()), *MOUSE, *WINDOW_KEYS]

@@ -19,7 +19,7 @@ from ramtek_emu.instruction_set.table import FORMATS
 
 LONGEST_MEANING: Final = 200
 """The most characters of an instruction in the listing."""
-POLLS: Final = frozenset(format.opcode for format in FORMATS if format.replies)
+POLLS: Final = frozenset(format.opcode for format in FORMATS if format.meaning.startswith("read "))
 """The opcodes of instructions that read."""
 
 

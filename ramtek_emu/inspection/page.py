@@ -104,7 +104,7 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
     whole = right + side + GAP
     bar = Box(GAP, bottom + BUTTON_LINES + 9, whole - 2 * GAP, BAR_LINES)
     boxes["status"] = status = Box(GAP, bar.top + bar.height + 3, whole - 2 * GAP, ROW)
-    return PageLayout(whole, status.top + ROW + 2, zoom, stage, field, boxes, tuple(places), bar)
+    return PageLayout(whole, status.top + ROW + 1, zoom, stage, field, boxes, tuple(places), bar)
 
 
 class InspectorPage:

@@ -28,7 +28,7 @@ ADVANCE: Final = CELL_ELEMENTS + 1
 ROW: Final = 11
 """The lines of a row of text in a box."""
 MARGIN: Final = 8
-HELP_ROW: Final = 16
+HELP_ROW: Final = 15
 """The lines of a row of the help page."""
 
 

@@ -76,14 +76,14 @@ def test_a_picture_at_an_instruction() -> None:
 
 
 def test_who_wrote_a_pixel_is_listed_with_the_newest_first() -> None:
-    (line,) = run("inspect", "-", "--who", "31", "31", data=DATA)[0].splitlines()
+    (line,) = run("inspect", "-", "--who", "31,31", data=DATA)[0].splitlines()
     assert line.split()[:4] == ["2", "0000", "->", "0004"]
     assert line.endswith("ERS BACK=4")
-    asked = run_json("inspect", "-", "--who", "0", "0", data=DATA)
+    asked = run_json("inspect", "-", "--who", "0,0", data=DATA)
     assert [write["number"] for write in asked] == [4, 2]
     assert asked[0]["instruction"]["name"] == "WT"
-    assert run_json("inspect", "-", "--who", "0", "0", "--at", "3", data=DATA) == asked[1:]
-    assert run_json("inspect", "-", "--who", "479", "639", data=DATA) == []
+    assert run_json("inspect", "-", "--who", "0,0", "--at", "3", data=DATA) == asked[1:]
+    assert run_json("inspect", "-", "--who", "639,479", data=DATA) == []
 
 
 def test_who_wrote_an_entry() -> None:
@@ -94,8 +94,8 @@ def test_who_wrote_an_entry() -> None:
         "",
         ["none of the first 2 instructions writes entry 1023"],
     )
-    assert run("inspect", "-", "--who", "9", "8", data=data)[1] == [
-        "none of the first 2 instructions writes line 9, element 8"
+    assert run("inspect", "-", "--who", "8,9", data=data)[1] == [
+        "none of the first 2 instructions writes element 8, line 9"
     ]
 
 

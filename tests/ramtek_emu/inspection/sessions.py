@@ -2,20 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
 from ramtek_emu import Configuration, Ramtek9300
 from ramtek_emu.host.server import HostSession
-from ramtek_emu.inspection.panels import Line
+from ramtek_emu.inspection import session as module
+from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import InspectionSession
+from ramtek_emu.inspection.session import Inspection, display_of, inspection_of
+from ramtek_emu.monitor.boxes import Line
 from tests.ramtek_emu.inspection.replays import replay_of
 from tests.ramtek_emu.strategies import SMALL
 
 
-def at_rest(session: InspectionSession) -> InspectionSession:
+class Steps:
+    """An inspection that is replaced by the results of the functions of its module: `steps.go(5)`."""
+
+    def __init__(self, value: Inspection) -> None:
+        self.state = value
+
+    @property
+    def display(self) -> Ramtek9300:
+        return display_of(self.state)
+
+    @property
+    def replay(self) -> Replay:
+        return self.state.replay
+
+    @property
+    def is_busy(self) -> bool:
+        return module.is_busy(self.state)
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        function = getattr(module, name)
+
+        def replace(*values: Any, **options: Any) -> None:
+            self.state = function(self.state, *values, **options)
+
+        return replace
+
+
+def at_rest(session: Steps) -> Steps:
     """The session after all waiting work."""
     while session.is_busy:
         session.tick()
@@ -26,10 +56,10 @@ def text_of(line: Line) -> str:
     return "".join(span.text for span in line)
 
 
-def session_of(*streams: object, configuration: Configuration = SMALL) -> InspectionSession:
+def session_of(*streams: object, configuration: Configuration = SMALL) -> Steps:
     """A prepared session of instructions, for the small display unless another is given."""
     words = np.concatenate([np.zeros(0, np.uint16), *(np.asarray(stream, np.uint16) for stream in streams)])
-    return at_rest(InspectionSession(replay_of(words.tolist(), configuration)))
+    return at_rest(Steps(inspection_of(replay_of(words.tolist(), configuration))))
 
 
 class Served:
@@ -39,7 +69,7 @@ class Served:
         self.host = RunningHost(display)
         self.host_session = HostSession(display, self.host.record, self.host.gate)
         self.host.step = self.step
-        self.inspection = InspectionSession(self.host.replay, self.host)
+        self.inspection = Steps(inspection_of(self.host.replay, self.host))
         self.replies = b""
         self._waiting: Iterator[bytes] = iter(())
 
@@ -63,7 +93,7 @@ class Served:
     def tick_until_still(self) -> None:
         """Let the instructions through that the paused inspection waits for."""
         session = self.inspection
-        while session.state.wanted or session.state.search or session.state.awaited:
+        while session.state.wanted or session.state.work or session.state.awaited:
             session.tick()
             if not self.host_session.unexecuted:
                 break

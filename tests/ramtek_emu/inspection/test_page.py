@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,40 +15,43 @@ from hypothesis import strategies as st
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.inspection import panels
-from ramtek_emu.inspection.page import InspectorPage, PageBox, PageLayout, layout_of
+from ramtek_emu.inspection.page import EDGE, InspectorPage, PageLayout, layout_of
 from ramtek_emu.inspection.panels import PAUSE
 from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import EntryRange, InspectionSession, selection_text
+from ramtek_emu.inspection.session import EntryRange, inspection_of, selection_text, tell, turn_to
 from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.monitor.overlay import ADVANCE
+from ramtek_emu.monitor.boxes import ADVANCE, BLACK, WHITE, Box
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.inspection.sessions import at_rest, session_of, text_of
+from tests.ramtek_emu.inspection.sessions import Steps, at_rest, session_of, text_of
 from tests.ramtek_emu.strategies import SMALL
 
 BUTTONS = ("<", ">", "entries")
 
 
-def page_of(session: InspectionSession) -> InspectorPage:
-    return InspectorPage(session, BUTTONS, [("Esc", "back")], "a page")
+def page_of(session: Steps) -> InspectorPage:
+    sizes = session.display.configuration
+    layout = layout_of(sizes.shown_elements, sizes.shown_lines, sizes.cursors, BUTTONS)
+    session.with_rows(layout.boxes["listing"].rows - 1, layout.boxes["history"].rows - 1)
+    return InspectorPage(session.state, layout, BUTTONS, [("Esc", "back")], "a page")
 
 
-def boxes_of(layout: PageLayout) -> dict[str, PageBox]:
+def boxes_of(layout: PageLayout) -> dict[str, Box]:
     buttons = {f"button {number}": box for number, box in enumerate(layout.buttons)}
     return {"stage": layout.stage, **layout.boxes, **buttons, "bar": layout.bar}
 
 
-def region(box: PageBox) -> Window:
+def region(box: Box) -> Window:
     return Window(box.left, box.top, box.left + box.width - 1, box.top + box.height - 1)
 
 
-def is_within(inner: PageBox, outer: PageBox) -> bool:
+def is_within(inner: Box, outer: Box) -> bool:
     return region(inner).intersection(region(outer)) == region(inner)
 
 
 @functools.cache
-def patterned(name: str) -> InspectionSession:
+def patterned(name: str) -> Steps:
     """A session at the end of the test pattern, whose state tests put back."""
     session = session_of(pattern(CONFIGURATIONS[name]), configuration=CONFIGURATIONS[name])
     session.go(session.state.length)
@@ -58,7 +62,7 @@ def patterned(name: str) -> InspectionSession:
 def test_no_part_of_a_page_covers_another(elements: int, lines: int, cursors: int) -> None:
     layout = layout_of(elements, lines, cursors, BUTTONS)
     boxes = boxes_of(layout)
-    whole = PageBox(0, 0, layout.elements, layout.lines)
+    whole = Box(0, 0, layout.elements, layout.lines)
     assert [name for name, box in boxes.items() if not is_within(box, whole)] == []
     pairs = itertools.combinations(boxes.items(), 2)
     meet = [(a, b) for (a, one), (b, other) in pairs if not region(one).intersection(region(other)).is_empty]
@@ -70,7 +74,7 @@ def test_no_part_of_a_page_covers_another(elements: int, lines: int, cursors: in
 
 
 @pytest.mark.parametrize(
-    ("name", "most"), [("GMR_9300", (1216, 720)), ("NCAR_9460", (1920, 1080)), ("JPL_9460", (1216, 720))]
+    ("name", "most"), [("GMR_9300", (1216, 720)), ("NCAR_9460", (1920, 1080)), ("JPL_9460", (1216, 724))]
 )
 def test_a_page_fits_on_usual_screens(name: str, most: tuple[int, int]) -> None:
     sizes = CONFIGURATIONS[name]
@@ -79,7 +83,7 @@ def test_a_page_fits_on_usual_screens(name: str, most: tuple[int, int]) -> None:
     assert layout.lines <= most[1]
 
 
-ACTIONS: st.SearchStrategy[Callable[[InspectionSession], object]] = st.one_of(
+ACTIONS: st.SearchStrategy[Callable[[Steps], object]] = st.one_of(
     st.integers(0, 60).map(lambda number: lambda session: session.go(number)),
     st.sampled_from(["entries", "help"]).map(lambda page: lambda session: session.turn_to(page)),
     st.builds(
@@ -90,15 +94,14 @@ ACTIONS: st.SearchStrategy[Callable[[InspectionSession], object]] = st.one_of(
     ),
     st.integers(0, 900).map(lambda n: lambda session: session.select(EntryRange(n, n + 1 + n % 3))),
     st.just(lambda session: session.select(None)),
-    st.just(lambda session: session.ask("opcode", "WI")),
-    st.just(lambda session: session.point_at(Point(3, 4))),
+    st.just(lambda session: session.ask("text", "WI")),
     st.integers(-9, 9).map(lambda rows: lambda session: session.scroll_listing(rows)),
 )
 
 
 @given(words=streams(), actions=st.lists(ACTIONS, max_size=10))
 def test_what_changes_is_drawn_as_the_whole_page_is(
-    words: list[int], actions: list[Callable[[InspectionSession], object]]
+    words: list[int], actions: list[Callable[[Steps], object]]
 ) -> None:
     session = session_of(words)
     page = page_of(session)
@@ -107,12 +110,11 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
     for action in actions:
         action(session)
         at_rest(session)
+        page.session = session.state
         before, runs = shown.copy(), page.lines_changed_since(stamp)
         stamp = page.scan_out_changes_into(shown, stamp)
         assert stamp == page.stamp
-        first_listed = session.state.first_listed
-        fresh = page_of(session)
-        session._change(first_listed=first_listed)
+        fresh = InspectorPage(session.state, page.layout, BUTTONS, [("Esc", "back")], "a page")
         whole = np.zeros_like(shown)
         fresh.scan_out_changes_into(whole, None)
         assert np.array_equal(shown, whole)
@@ -127,18 +129,21 @@ def test_a_message_changes_only_its_lines() -> None:
     session = session_of(pattern(), configuration=CONFIGURATIONS["GMR_9300"])
     page = page_of(session)
     stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
-    session.tell("a message")
+    page.session = tell(session.state, "a message")
     status = page.layout.boxes["status"]
-    assert page.lines_changed_since(stamp) == ((status.top, status.top + status.height),)
+    ((first, end),) = page.lines_changed_since(stamp)
+    assert status.top <= first < end <= status.top + status.height
 
 
 def test_the_button_that_pauses_reads_go_on_while_the_host_waits() -> None:
     host = RunningHost(Ramtek9300(SMALL))
-    session = InspectionSession(host.replay, host)
-    page = InspectorPage(session, ["<", PAUSE], [], "a page")
+    session = Steps(inspection_of(host.replay, host))
+    layout = layout_of(13, 9, 2, ["<", PAUSE])
+    page = InspectorPage(session.state, layout, ["<", PAUSE], [], "a page")
     pictures = []
     for action in (session.go_on, session.pause, session.go_on):
         action()
+        page.session = session.state
         left, top, width, height = page.layout.buttons[1]
         pictures.append(page.colors()[top : top + height, left : left + width].tolist())
     assert pictures[0] == pictures[2] != pictures[1]
@@ -153,23 +158,23 @@ def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str)
         cursor.state = VISIBLE | BLINK
     session.display.cursors.track = True
     boxes = page_of(session).layout.boxes
-    cursors = [text_of(line) for line in panels.cursors(session)]
+    cursors = [text_of(line) for line in panels.cursors(session.state)]
     assert max(map(len, cursors)) <= boxes["cursors"].width // ADVANCE
     assert len(cursors) == boxes["cursors"].rows
     parameters = session.display.processor.parameters
     parameters.origin = Point(sizes.elements - 1, sizes.lines - 1)
     session.display.send(instructions.erase(word=sizes.largest_word))
-    session.point_at(Point(0, 0))
+    session.state = replace(session.state, pointer=Point(0, 0))
     last = Window(sizes.elements - 1, sizes.lines - 1, sizes.elements - 1, sizes.lines - 1)
     session.select(last)
-    pixels = [text_of(line) for line in panels.pixels(session)]
+    pixels = [text_of(line) for line in panels.pixels(session.state)]
     assert max(map(len, pixels)) <= boxes["pixels"].width // ADVANCE
     assert [pixel.split()[0] for pixel in pixels] == ["pointer", "selected", "screen"]
     assert len(pixels) == boxes["pixels"].rows
     whole = Window(sizes.elements - 100, sizes.lines - 100, sizes.elements - 1, sizes.lines - 1)
     session.select(whole)
-    session._await(f"a change of {selection_text(whole)}", lambda: False)
-    assert len(session.state.message) <= boxes["status"].width // ADVANCE
+    message = f"waiting for the host: a change of {selection_text(whole)} ... Esc stops"
+    assert len(message) <= boxes["status"].width // ADVANCE
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
@@ -180,6 +185,9 @@ def test_the_field_is_shown_at_a_whole_multiple(name: str) -> None:
     field = session.display.field()
     zoom = page.layout.zoom
     expected = field.repeat(zoom, axis=0).repeat(zoom, axis=1)
+    page.blink_is_on = False
+    page.draw()
+    page.blink_is_on = True
     assert np.array_equal(page.colors()[top : top + height, left : left + width], expected)
     assert np.array_equal(page.field(), field)
 
@@ -199,12 +207,11 @@ def test_the_places_of_the_mouse_are_those_that_are_seen() -> None:
             assert page.panel_at(Point(element, box.top + box.height - 1)) == (name, box.rows - 2)
         assert page.panel_at(Point(box.left + box.width, box.top)) == ("", 0)
         assert page.panel_at(Point(box.left, box.top + box.height)) == ("", 0)
-    assert page.panel_at(Point(639, 479)) == ("stage", 0)
-    assert (
-        page.panel_at(Point(640, 479)) == page.panel_at(Point(page.elements - 1, page.lines - 1)) == ("", 0)
-    )
+    assert page.panel_at(Point(643, 483)) == ("stage", 0)
+    last = Point(page.elements - 1, page.lines - 1)
+    assert page.panel_at(Point(644, 483)) == page.panel_at(last) == ("", 0)
     bar = page.layout.bar
-    assert [page.panel_at(Point(100, bar.top + line))[0] for line in (-4, -3, 9, 10)] == [
+    assert [page.panel_at(Point(100, bar.top + line))[0] for line in (-1, 0, 12, 13)] == [
         "",
         "bar",
         "bar",
@@ -212,7 +219,7 @@ def test_the_places_of_the_mouse_are_those_that_are_seen() -> None:
     ]
     # Outside the field, the nearest place of the screen.
     assert page.field_place(Point(-5, 700)) == (0, 479)
-    assert page.field_place(Point(639, 0)) == page.field_place(Point(640, -1)) == (639, 0)
+    assert page.field_place(Point(641, 2)) == page.field_place(Point(642, -1)) == (639, 0)
     small = page_of(session_of())
     left, top, width, height = small.layout.field
     last = Point(left + width - 1, top + height - 1)
@@ -226,14 +233,35 @@ def test_the_places_of_the_mouse_are_those_that_are_seen() -> None:
 def test_every_entry_has_its_cell(name: str) -> None:
     session = patterned(name)
     page = page_of(session)
-    colors = session.display.scan_out.table()
-    session.turn_to("entries")
+    page.session = turn_to(session.state, "entries")
+    scan_out = session.display.scan_out
     shown = np.zeros((page.lines, page.elements), np.uint32)
     page.scan_out_changes_into(shown, None)
-    for word in range(len(colors)):
-        box = page._cell(word)
-        entry = session.display.scan_out.first_entry + word
-        for place in (Point(*box[:2]), Point(box.left + box.width - 1, box.top + box.height - 1)):
-            assert page.entry_at(place) == entry
-            assert shown[place.line, place.element] == colors[word]
-    session.turn_to("entries")
+    words = set()
+    for line in range(EDGE, page.layout.stage.height - EDGE, 5):
+        for element in range(EDGE, page.layout.stage.width - EDGE, 5):
+            entry = page.entry_at(Point(element, line))
+            if entry is not None:
+                words.add(word := entry - scan_out.first_entry)
+                assert shown[line, element] == scan_out.table()[word]
+    assert len(words) == len(scan_out.table())
+
+
+def test_rings_are_around_the_pixels_that_an_instruction_writes() -> None:
+    box = instructions.erase((100, 50, 109, 59), 5)
+    session = session_of(box, box, configuration=CONFIGURATIONS["GMR_9300"])
+    session.go(2)
+    page = page_of(session)
+    page.blink_is_on = False
+    colors = page.colors().astype(int).sum(axis=2)[:, :, np.newaxis]
+    left, top = 100 + EDGE, 50 + EDGE
+    rings = [
+        colors[top - distance : top + 10 + distance, left - distance : left + 10 + distance]
+        for distance in (1, 2)
+    ]
+    for ring, color in zip(rings, (BLACK, WHITE), strict=True):
+        parts = ring[0], ring[-1], ring[:, 0], ring[:, -1]
+        assert {int(value) for part in parts for value in part.ravel()} == {sum(color.to_bytes(3, "big"))}
+    page.blink_is_on = True
+    field = page.colors()[EDGE : 480 + EDGE, EDGE : 640 + EDGE]
+    assert np.array_equal(field, session.display.field())

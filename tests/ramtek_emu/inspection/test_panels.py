@@ -1,14 +1,16 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ramtek_emu import instructions
 from ramtek_emu.inspection import panels
-from ramtek_emu.inspection.panels import Span, wrapped
-from ramtek_emu.inspection.session import LONGEST_MEANING, EntryRange, meaning_of
-from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
+from ramtek_emu.inspection.listing import LONGEST_MEANING, meaning_of
+from ramtek_emu.inspection.panels import wrapped
+from ramtek_emu.inspection.session import EntryRange
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.monitor.overlay import ORANGE, WHITE
+from ramtek_emu.monitor.boxes import GRAY, ORANGE, WHITE, Span
 from tests.ramtek_emu.inspection.sessions import Served, at_rest, session_of, text_of
 from tests.ramtek_emu.recorded_streams import listing, words
 from tests.small import BOXES_STREAM
@@ -16,7 +18,7 @@ from tests.small import BOXES_STREAM
 
 def test_a_long_meaning_is_cut_and_an_illegal_word_is_raw() -> None:
     session = session_of(instructions.write_image(np.arange(117).reshape(9, 13)), [0xFFFF])
-    texts = [meaning_of(session.replay.stream.item(number)) for number in (1, 2)]
+    texts = [meaning_of(session.replay.stream, number) for number in (1, 2)]
     assert len(texts[0]) == LONGEST_MEANING
     assert texts[1] == "raw FFFF ; begins no instruction"
 
@@ -35,7 +37,7 @@ def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() ->
     served = Served(session_of().display)
     session = served.inspection
     session.pause()
-    assert {line[1].color for line in panels.parameters(session)} == {panels.GRAY}
+    assert {line[1].color for line in panels.parameters(session.state)} == {GRAY}
     served.send(*BOXES_STREAM)
     colors = []
     for number in range(1, 6):
@@ -43,38 +45,38 @@ def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() ->
         while session.state.wanted:
             session.tick()
         assert session.state.number == number
-        rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+        rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session.state)}
         colors.append((rows["background"][1].color, rows["next entry"][1].color))
     # Instructions 2 and 5 load an entry, the others erase.
-    gray = panels.GRAY
-    assert colors == [(ORANGE, gray), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
+    assert colors == [(ORANGE, GRAY), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
     # Forward and back over what was executed, the position before counts.
     session.go(1)
     session.go(3)
-    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
-    assert (rows["background"][1], rows["mask"][1]) == (Span("*7", ORANGE), Span(" 0xFFFF", panels.GRAY))
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session.state)}
+    assert (rows["background"][1], rows["mask"][1]) == (Span("*7", ORANGE), Span(" 0xFFFF", GRAY))
     session.go(1)
     session.go(5)
     served.send(*BOXES_STREAM)
-    session.next_opcode(FORMAT_OF_NAME["LAM"].opcode)
+    session.ask("text", "lam")
+    session.find()
     while session.state.awaited:
         session.tick()
-    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session)}
+    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session.state)}
     assert (session.state.number, rows["window"][1].color) == (7, ORANGE)
     session.go_on()
     served.execute()
-    assert ORANGE not in {line[1].color for line in panels.parameters(session)}
+    assert ORANGE not in {line[1].color for line in panels.parameters(session.state)}
 
 
 def test_a_history_says_up_to_which_instruction_it_is() -> None:
     session = session_of(*BOXES_STREAM)
     session.go(3)
     session.select(Window(4, 4, 4, 4))
-    titles = [text_of(panels.history_title(at_rest(session)))]
+    titles = [text_of(panels.history_title(at_rest(session).state))]
     session.go(5)
-    titles.append(text_of(panels.history_title(session)))
+    titles.append(text_of(panels.history_title(session.state)))
     session.select(Window(4, 4, 4, 4))
-    titles.append(text_of(panels.history_title(at_rest(session))))
+    titles.append(text_of(panels.history_title(at_rest(session).state)))
     assert titles == [
         "history of pixel 4,4: 2 writes up to instruction 3",
         "history of pixel 4,4: 2 writes up to instruction 3",
@@ -85,15 +87,15 @@ def test_a_history_says_up_to_which_instruction_it_is() -> None:
 def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
     session = session_of(*BOXES_STREAM)
     session.go(2)
-    session.point_at(Point(3, 4))
+    session.state = replace(session.state, pointer=Point(3, 4))
     session.select(Window(5, 6, 5, 6))
-    pointer, selected = panels.pixels(at_rest(session))
+    pointer, selected = panels.pixels(at_rest(session).state)
     assert text_of(pointer).split() == ["pointer", "3,4", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
     assert text_of(selected).split() == ["selected", "5,6", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
     assert pointer[2].background == 0x0A141E
-    session.point_at(entry=5)
+    session.state = replace(session.state, pointed_entry=5)
     session.select(EntryRange(5, 8))
-    assert [text_of(line).split() for line in panels.pixels(session)] == [
+    assert [text_of(line).split() for line in panels.pixels(session.state)] == [
         ["pointer", "entry", "5", "#0A141E"],
         ["selected", "entries", "5", "to", "7"],
     ]
@@ -102,11 +104,11 @@ def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
 def test_the_title_says_whether_a_host_runs_and_what_is_incomplete() -> None:
     served = Served(session_of(BOXES_STREAM[0]).display)
     session = served.inspection
-    assert text_of(panels.title(session)) == "instruction 0 of 0  running"
+    assert text_of(panels.title(session.state)) == "instruction 0 of 0  running"
     session.pause()
-    assert text_of(panels.title(session)) == "instruction 0 of 0  paused"
+    assert text_of(panels.title(session.state)) == "instruction 0 of 0  paused"
     assert (
-        text_of(panels.title(session_of(BOXES_STREAM[0], BOXES_STREAM[2][:4])))
+        text_of(panels.title(session_of(BOXES_STREAM[0], BOXES_STREAM[2][:4]).state))
         == "instruction 0 of 1  4 words of the next"
     )
 
@@ -114,8 +116,8 @@ def test_the_title_says_whether_a_host_runs_and_what_is_incomplete() -> None:
 def test_cursors_and_the_reply_that_reads_them_are_shown() -> None:
     session = session_of(instructions.write_cursor(0, 3, 4), instructions.read_cursor(0))
     session.go(2)
-    assert text_of(panels.cursors(session)[0]).split() == ["cursor", "0", "3,4", "visible"]
-    assert text_of(panels.words_of_the_instruction(session, 9, 64)[-1]) == "reply  0003 0404"
+    assert text_of(panels.cursors(session.state)[0]).split() == ["cursor", "0", "3,4", "visible"]
+    assert text_of(panels.words_of_the_instruction(session.state, 9, 64)[-1]) == "reply  0003 0404"
 
 
 def test_what_does_not_fit_by_one_row_or_one_word_ends_in_periods() -> None:
@@ -123,15 +125,15 @@ def test_what_does_not_fit_by_one_row_or_one_word_ends_in_periods() -> None:
     reply, _ = next(instructions.read_image(0, 0, 8, 6))
     session = session_of(image, reply)
     session.go(1)
-    texts = [text_of(line) for line in panels.words_of_the_instruction(session, 1000, 64)]
+    texts = [text_of(line) for line in panels.words_of_the_instruction(session.state, 1000, 64)]
     rows = len(texts)
-    assert [text_of(line) for line in panels.words_of_the_instruction(session, rows, 64)] == texts
-    cut = [text_of(line) for line in panels.words_of_the_instruction(session, rows - 1, 64)]
+    assert [text_of(line) for line in panels.words_of_the_instruction(session.state, rows, 64)] == texts
+    cut = [text_of(line) for line in panels.words_of_the_instruction(session.state, rows - 1, 64)]
     assert cut == [*texts[: rows - 2], "       ..."]
     # All 48 words of a reply take 7 + 48 * 5 characters, and the last of them needs no gap.
     session.go(2)
     words = " ".join(f"{word:04X}" for word in range(48))
-    last = text_of(panels.words_of_the_instruction(session, 9, 7 + 48 * 5 + len(" .. 48 words"))[-1])
+    last = text_of(panels.words_of_the_instruction(session.state, 9, 7 + 48 * 5 + len(" .. 48 words"))[-1])
     assert last == f"reply  {words}"
-    last = text_of(panels.words_of_the_instruction(session, 9, 6 + 48 * 5 + len(" .. 48 words"))[-1])
+    last = text_of(panels.words_of_the_instruction(session.state, 9, 6 + 48 * 5 + len(" .. 48 words"))[-1])
     assert last == f"reply  {words[:-5]} .. 48 words"

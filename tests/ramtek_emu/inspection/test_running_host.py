@@ -12,8 +12,8 @@ from ramtek_emu.host.server import TcpServer
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import running_host as module
 from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import InspectionSession
-from tests.ramtek_emu.inspection.sessions import Served, text_of
+from ramtek_emu.inspection.session import inspection_of
+from tests.ramtek_emu.inspection.sessions import Served, Steps, text_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
 
 POINTS = np.random.default_rng(1).integers(0, (640, 480), (16000, 2))
@@ -31,7 +31,7 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
     host = RunningHost(Ramtek9300())
     with TcpServer(host.display, idle_seconds=5, record=host.record) as server:
         server.gate, host.step, host.is_connected = host.gate, server.step, lambda: server.busy
-        session = InspectionSession(host.replay, host)
+        session = Steps(inspection_of(host.replay, host))
         session.pause()
         port = TcpPort(server.address)
         port.send(np.tile(instructions.read_cursor(0), 3))
@@ -68,7 +68,7 @@ def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_
     served.execute(OUTLINE)
     session = served.inspection
     session.go(len(session.replay.stream) - 1)
-    assert "200,100" in text_of(panels.cursors(session)[0])
+    assert "200,100" in text_of(panels.cursors(session.state)[0])
 
 
 def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: pytest.MonkeyPatch) -> None:

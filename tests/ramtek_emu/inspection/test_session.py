@@ -13,34 +13,26 @@ from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import session as module
 from ramtek_emu.inspection.histories import finished, next_change, writes_to_entry, writes_to_pixel
-from ramtek_emu.inspection.session import (
-    EntryRange,
-    InspectionSession,
-    name_of,
-    opcode_of,
-    parameter_texts,
-)
+from ramtek_emu.inspection.session import EntryRange, inspection_of, memory_window, parameter_texts, with_rows
 from ramtek_emu.instruction_set.disassembler import items
-from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, FORMATS
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.replays import moments, replay_of, states_every
-from tests.ramtek_emu.inspection.sessions import Served, at_rest, session_of, text_of
+from tests.ramtek_emu.inspection.sessions import Served, Steps, at_rest, session_of, text_of
 from tests.ramtek_emu.strategies import SMALL, cuts
 from tests.small import BOXES_STREAM
 
 STEPS = st.one_of(
     st.tuples(st.just("go"), st.integers(-2, 70)),
     st.tuples(st.just("step"), st.integers(-12, 12)),
-    st.tuples(st.just("next_opcode"), st.none() | st.sampled_from([f.opcode for f in FORMATS])),
+    st.tuples(st.just("next_change"), st.booleans()),
     st.tuples(st.just("select"), st.builds(Window, st.just(3), st.just(2), st.integers(3, 12), st.just(8))),
     st.tuples(st.just("select"), st.builds(Window, st.just(3), st.just(2), st.just(3), st.just(2))),
     st.tuples(st.just("select"), st.builds(lambda n: EntryRange(n, n + 1), st.integers(0, 1023))),
     st.tuples(st.just("click_history"), st.integers(0, 3)),
     st.tuples(st.just("click_listing"), st.integers(0, 30)),
     st.tuples(st.just("scroll_listing"), st.integers(-30, 30)),
-    st.just(("next_change",)),
 )
 
 
@@ -49,7 +41,7 @@ STEPS = st.one_of(
 def test_after_any_steps_display_and_panels_are_of_that_instruction(
     words: list[int], steps: list[tuple[str, object]], width: int
 ) -> None:
-    session = at_rest(InspectionSession(replay_of(words)))
+    session = at_rest(Steps(inspection_of(replay_of(words))))
     expected = moments(session.replay)
     listed = list(items([np.array(words, "<u2").tobytes()], SMALL))
     for name, *values in steps:
@@ -58,17 +50,17 @@ def test_after_any_steps_display_and_panels_are_of_that_instruction(
         number = session.state.number
         assert session.state.target == number
         assert snapshot_bytes(session.display) == expected[number][0]
-        texts = [text_of(line) for line in panels.words_of_the_instruction(session, 1000, width)]
+        texts = [text_of(line) for line in panels.words_of_the_instruction(session.state, 1000, width)]
         assert all(len(text) <= width for text in texts)
         reply = expected[number][1]
         assert any(text.startswith("reply") for text in texts) == bool(len(reply))
         if number:
             lines = " ".join(listed[number - 1].lines()).split()
             assert " ".join(texts).split()[: len(lines)] == lines
-        marked = [text_of(line) for line in panels.listing(session) if text_of(line).startswith(">")]
+        marked = [text_of(line) for line in panels.listing(session.state) if text_of(line).startswith(">")]
         assert all(int(text[1:].split()[0]) == number for text in marked)
-        values_shown = [text_of(line[1:]).strip("* ") for line in panels.parameters(session)]
-        fresh = parameter_texts(session.display.processor.parameters)
+        values_shown = [text_of(line[1:]).strip("* ") for line in panels.parameters(session.state)]
+        fresh = parameter_texts(session.display)
         assert values_shown[: len(fresh)] == list(fresh.values())
 
 
@@ -77,7 +69,7 @@ def test_the_histories_and_the_next_change_are_those_of_the_stream(
     words: list[int], places: list[int]
 ) -> None:
     with states_every(0):
-        session = at_rest(InspectionSession(replay_of(words)))
+        session = at_rest(Steps(inspection_of(replay_of(words))))
         for place in places:
             session.go(place)
             line, element = place % 9, place % 13
@@ -99,7 +91,7 @@ def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
     session = session_of(*BOXES_STREAM)
     session.go(5)
     session.select(Window(4, 4, 4, 4))
-    assert [text_of(line).split()[:4] for line in panels.history(at_rest(session))] == [
+    assert [text_of(line).split()[:4] for line in panels.history(at_rest(session).state)] == [
         ["4", "0007", "to", "0005"],
         ["3", "0005", "to", "0007"],
         ["1", "0000", "to", "0005"],
@@ -117,7 +109,7 @@ def test_the_history_of_an_entry_shows_its_colors() -> None:
     session = session_of(*BOXES_STREAM)
     session.go(5)
     session.select(EntryRange(5, 6))
-    assert [text_of(line).strip(">").split()[:4] for line in panels.history(at_rest(session))] == [
+    assert [text_of(line).strip(">").split()[:4] for line in panels.history(at_rest(session).state)] == [
         ["5", "#0A141E", "to", "#28323C"],
         ["2", "#000000", "to", "#0A141E"],
     ]
@@ -139,39 +131,75 @@ def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None
     assert at_rest(session).state.number == 3
 
 
-def type_into(session: InspectionSession, prompt: str, text: str) -> None:
-    session.ask(prompt)
-    for character in text:
-        session.type(character)
-    session.enter()
-
-
-def test_the_next_and_the_last_of_an_opcode_are_found_by_name() -> None:
+def test_a_text_of_the_listing_is_found_forward_and_back() -> None:
     session = session_of(*BOXES_STREAM)
-    type_into(session, "opcode", "ers")
-    numbers = [session.state.number]
-    for back in (False, False, False, True, True, True):
-        session.next_opcode(back=back)
-        numbers.append(session.state.number)
+    session.ask("text", "ers")
+    numbers = []
+    for back in (False, False, False, False, True, True, True):
+        session.enter(back)
+        numbers.append(at_rest(session).state.number)
     assert numbers == [1, 3, 4, 4, 3, 1, 1]
-    assert session.state.message == "no ERS before instruction 1"
-    type_into(session, "opcode", "xyz")
-    message = "an opcode must be a name such as WI, or two digits, not XYZ"
-    assert (session.state.message, session.state.prompt, session.state.number) == (message, "", 1)
+    assert session.state.message == "no ers before instruction 1"
+    for text, number in (("ERS BACK=7", 3), ("ERS WIN=", 4), ("LAM", 5), ("BACK=", 5), ("WI WIN=", 5)):
+        session.ask("text", text)
+        session.find()
+        assert at_rest(session).state.number == number, text
 
 
-def test_every_opcode_is_known_by_its_name() -> None:
-    for format in FORMATS:
-        assert opcode_of(name_of(format.opcode)) == format.opcode
-    assert [opcode_of("0a"), opcode_of("zz"), opcode_of("A")] == [0x0A, None, None]
+def test_equal_polls_are_a_single_row() -> None:
+    poll, other = instructions.read_cursor(0), instructions.read_cursor(1)
+    image = [0x0E01, 4 * len(poll), *np.tile(poll, 2)]
+    session = session_of(image, np.tile(poll, 700), other, BOXES_STREAM[0], BOXES_STREAM[0])
+    for number, marked in (
+        (0, "0 the start"),
+        (2, "2 RCSS x 700"),
+        (600, "600 RCSS x 700"),
+        (702, "702 RCSS #1"),
+    ):
+        session.go(number)
+        at_rest(session)
+        rows = [" ".join(text_of(line).split()) for line in panels.listing(session.state)]
+        assert len(rows) == 6
+        assert next(row for row in rows if row.startswith(">")).strip("> ").startswith(marked)
+    session.click_listing(2)
+    assert session.state.number == 2
+    session.state = with_rows(session.state, 3, 3)
+    session.scroll_listing(2)
+    assert session.state.first_listed == 702
+    session.scroll_listing(-1)
+    assert session.state.first_listed == 2
 
 
-def test_a_typed_number_is_gone_to_and_can_be_corrected() -> None:
+@given(words=streams(), number=st.integers(1, 60))
+def test_the_words_that_an_instruction_writes_are_noted(words: list[int], number: int) -> None:
+    session = at_rest(Steps(inspection_of(replay_of(words))))
+    session.go(number)
+    at_rest(session)
+    number = session.state.number
+    for line, element in ((0, 0), (3, 5), (8, 12)):
+        writes = finished(writes_to_pixel(session.replay, line, element, number))
+        is_written = session.state.written is not None and bool(session.state.written[line, element])
+        assert is_written == (number in [write.number for write in writes])
+
+
+@given(words=streams(), number=st.integers(1, 60))
+def test_the_change_before_is_the_last_of_all_changes_until_then(words: list[int], number: int) -> None:
+    with states_every(0):
+        session = at_rest(Steps(inspection_of(replay_of(words))))
+    window, changes, last = Window(2, 2, 5, 5), [], 0
+    while (change := finished(next_change(session.replay, window, last))) is not None:
+        changes.append(last := change)
+    session.go(number)
+    number = at_rest(session).state.number
+    session.select(window)
+    session.next_change(True)
+    assert at_rest(session).state.number == max([c for c in changes if c < number], default=number)
+
+
+def test_a_typed_number_is_gone_to() -> None:
     session = session_of(*BOXES_STREAM)
     session.ask("instruction", "3")
-    session.type("9")
-    session.erase_typed()
-    assert text_of(panels.status(session)) == "go to instruction: 3_"
+    assert text_of(panels.status(session.state)) == "go to instruction: 3_"
     session.enter()
     assert session.state.number == 3
 
@@ -180,7 +208,7 @@ def test_escape_leaves_what_was_begun_last() -> None:
     session = session_of(*BOXES_STREAM)
     session.select(Window(1, 1, 2, 2))
     session.turn_to("entries")
-    session.ask("opcode")
+    session.ask("text")
     left = []
     for _ in range(3):
         session.escape()
@@ -189,17 +217,17 @@ def test_escape_leaves_what_was_begun_last() -> None:
 
 
 @pytest.fixture
-def far(monkeypatch: pytest.MonkeyPatch) -> InspectionSession:
+def far(monkeypatch: pytest.MonkeyPatch) -> Steps:
     """A session that goes to instruction 100, and whose ticks do as little as they can."""
     monkeypatch.setattr(module, "PIECE_SECONDS", 0.0)
-    session = InspectionSession(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist()))
+    session = Steps(inspection_of(replay_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 100).tolist())))
     session.go(100)
     assert (session.state.number, session.state.target) == (0, 100)
     return session
 
 
-def test_a_far_instruction_is_gone_to_when_states_are_prepared(far: InspectionSession) -> None:
-    assert text_of(panels.status(far)).startswith("preparing")
+def test_a_far_instruction_is_gone_to_when_states_are_prepared(far: Steps) -> None:
+    assert text_of(panels.status(far.state)).startswith("preparing")
     ticks = 0
     while far.is_busy:
         far.tick()
@@ -210,7 +238,7 @@ def test_a_far_instruction_is_gone_to_when_states_are_prepared(far: InspectionSe
 
 
 def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_come(
-    far: InspectionSession,
+    far: Steps,
 ) -> None:
     far.select(Window(1, 1, 1, 1))
     assert (far.state.number, far.state.writes) == (0, None)
@@ -218,7 +246,7 @@ def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_co
 
 
 def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_shown(
-    far: InspectionSession,
+    far: Steps,
 ) -> None:
     assert far.state.first_listed > 0
     far.escape()
@@ -226,7 +254,7 @@ def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_sho
 
 
 def test_stepping_needs_no_prepared_states() -> None:
-    session = InspectionSession(replay_of(np.concatenate(BOXES_STREAM).tolist()))
+    session = Steps(inspection_of(replay_of(np.concatenate(BOXES_STREAM).tolist())))
     session.step(1)
     assert (session.state.number, session.replay.prepared) == (1, 0)
 
@@ -234,19 +262,19 @@ def test_stepping_needs_no_prepared_states() -> None:
 def test_a_rectangle_of_the_screen_is_one_of_the_memory() -> None:
     session = session_of(*BOXES_STREAM)
     places = Point(5, 4), Point(2, 1)
-    assert session.memory_window(*places) == (2, 1, 5, 4)
+    assert memory_window(session.display, *places) == (2, 1, 5, 4)
     session.display.send(np.concatenate((instructions.set_parameters(origin=(3, 2)), instructions.zoom(2))))
-    assert session.memory_window(*places) == (4, 2, 5, 4)
+    assert memory_window(session.display, *places) == (4, 2, 5, 4)
     # Half a word at the right edge of the screen is a word.
-    assert session.memory_window(Point(12, 0), Point(3, 8)) == (4, 2, 9, 6)
+    assert memory_window(session.display, Point(12, 0), Point(3, 8)) == (4, 2, 9, 6)
     session.display.processor.parameters.origin_at_bottom = True
     # The screen has nine lines: lines 1 to 4 are 7 to 4 from the bottom.
-    assert session.memory_window(*places) == (4, 4, 5, 5)
+    assert memory_window(session.display, *places) == (4, 4, 5, 5)
 
 
 def test_lists_show_what_is_left_when_one_row_more_than_fits_is_there() -> None:
     session = session_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 6))
-    session.set_rows(6, 5)
+    session.with_rows(6, 5)
     session.go(6)
     session.select(Window(1, 1, 1, 1))
     at_rest(session)
@@ -254,8 +282,8 @@ def test_lists_show_what_is_left_when_one_row_more_than_fits_is_there() -> None:
     for rows in (-9, 0, 1, 9):
         session.scroll_listing(rows)
         session.scroll_history(rows)
-        listed = [int(text_of(line)[1:].split()[0]) for line in panels.listing(session)]
-        history = [int(text_of(line)[1:].split()[0]) for line in panels.history(session)]
+        listed = [int(text_of(line)[1:].split()[0]) for line in panels.listing(session.state)]
+        history = [int(text_of(line)[1:].split()[0]) for line in panels.history(session.state)]
         seen.append((listed, history))
     first, second = ([*range(6)], [6, 5, 4, 3, 2]), ([*range(1, 7)], [5, 4, 3, 2, 1])
     assert seen == [first, first, second, second]
@@ -328,7 +356,7 @@ def test_steps_beyond_the_end_wait_for_as_many_instructions_of_a_paused_host() -
     assert (session.state.number, session.state.wanted, len(session.replay.stream)) == (5, 0, 5)
 
 
-def snapshot_of_whole(session: InspectionSession) -> bytes:
+def snapshot_of_whole(session: Steps) -> bytes:
     """The snapshot of the display, without the words of an incomplete instruction and their count."""
     display = copy.deepcopy(session.display)
     display.decoder.clear()
@@ -346,15 +374,18 @@ def test_a_paused_host_runs_to_an_opcode_or_to_a_change() -> None:
         if opcode is None:
             session.next_change()
         else:
-            session.next_opcode(FORMAT_OF_NAME[opcode].opcode)
+            session.ask("text", opcode)
+            session.find()
         served.tick_until_still()
-        numbers.append((session.state.number, session.state.awaited))
+        numbers.append((session.state.number, session.state.message))
     # Instructions 3 and 4 do not change the pixel, and no WI is sent.
     assert [number for number, _ in numbers[:2]] == [1, 2]
-    assert [awaited for _, awaited in numbers[2:]] == ["a change of pixel 6,6", "WI"]
+    assert [message for _, message in numbers[2:]] == [
+        f"waiting for the host: {what} ... Esc stops" for what in ("a change of pixel 6,6", "WI")
+    ]
     assert session.display.words[6, 6] == 5
     session.escape()
-    assert (session.state.awaited, session.state.message) == ("", "paused: the host waits")
+    assert (session.state.awaited, session.state.message) == (None, "paused: the host waits")
     assert len(session.replay.stream) == 5
 
 

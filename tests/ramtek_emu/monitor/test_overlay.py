@@ -4,18 +4,8 @@ import numpy as np
 import pytest
 
 from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.monitor.overlay import (
-    BLACK,
-    KEYS,
-    ORANGE,
-    WHITE,
-    YELLOW,
-    Overlay,
-    entries_page,
-    help_page,
-    write,
-    write_message,
-)
+from ramtek_emu.monitor.boxes import BLACK, ORANGE, WHITE, YELLOW, entries_page, help_page, write
+from ramtek_emu.monitor.overlay import KEYS, Overlay, write_message
 
 
 @pytest.mark.parametrize(
@@ -65,9 +55,9 @@ def test_the_help_has_a_line_for_each_key(lines: int, elements: int) -> None:
     expected = np.full((lines, elements), BLACK, np.uint32)
     write(expected, "RAMTEK 9300", 8 * size, 8 * size, YELLOW, size=2 * size)
     for number, (keys, action) in enumerate(KEYS):
-        write(expected, keys, 8 * size, (48 + 16 * number) * size, ORANGE, size=size)
-        write(expected, action, 136 * size, (48 + 16 * number) * size, size=size)
-    assert np.array_equal(help_page(lines, elements, "RAMTEK 9300"), expected)
+        write(expected, keys, 8 * size, (46 + 15 * number) * size, ORANGE, size=size)
+        write(expected, action, 136 * size, (46 + 15 * number) * size, size=size)
+    assert np.array_equal(help_page(lines, elements, "RAMTEK 9300", KEYS), expected)
 
 
 def test_a_page_is_turned_to_and_back() -> None:
@@ -81,7 +71,7 @@ def test_a_page_is_turned_to_and_back() -> None:
     assert np.array_equal(field, entries_page(colors, 480, 640))
     overlay.turn_to("help")
     overlay.draw(field, colors, "title")
-    assert np.array_equal(field, help_page(480, 640, "title"))
+    assert np.array_equal(field, help_page(480, 640, "title", KEYS))
     overlay.turn_to("help")
     assert overlay.stamp == ("", "")
 
