@@ -26,8 +26,8 @@ from ramtek_emu.monitor.boxes import (
     ORANGE,
     ROW,
     WHITE,
-    Box,
     Line,
+    PageBox,
     Span,
     cells,
     entries_page,
@@ -48,7 +48,7 @@ EDGE: Final = 2
 TALL_LINES: Final = 800
 """A field with so many lines has all panels at its right."""
 PARAMETER_ROWS: Final = {2: 14, 3: 9}
-PARAMETER_WIDTHS: Final = {2: (34, 30), 3: (34, 29, 16)}
+PARAMETER_WIDTHS: Final = {2: (34, 30), 3: (33, 28, 18)}
 """The rows and the widths in characters, by the number of columns."""
 DISTANCE: Final = 2
 """The pixels between a selected pixel and the rings around it."""
@@ -65,22 +65,22 @@ class PageLayout(NamedTuple):
     elements: int
     lines: int
     zoom: int
-    stage: Box
+    stage: PageBox
     """The place for a page, or for the field and the rings around it."""
-    field: Box
-    boxes: dict[str, Box]
+    field: PageBox
+    boxes: dict[str, PageBox]
     """The panels by name; the first row of some is their title."""
-    buttons: tuple[Box, ...]
-    bar: Box
+    buttons: tuple[PageBox, ...]
+    bar: PageBox
 
 
 def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -> PageLayout:
     """The layout around a field of some elements and lines, with these buttons."""
     zoom = max(1, min(STAGE.element // elements, STAGE.line // lines))
     width, height = max(STAGE.element, elements * zoom), max(STAGE.line, lines * zoom)
-    stage = Box(0, 0, width + 2 * EDGE, height + 2 * EDGE)
+    stage = PageBox(0, 0, width + 2 * EDGE, height + 2 * EDGE)
     left, top = (stage.width - elements * zoom) // 2, (stage.height - lines * zoom) // 2
-    field = Box(left, top, elements * zoom, lines * zoom)
+    field = PageBox(left, top, elements * zoom, lines * zoom)
     is_tall = stage.height >= TALL_LINES
     rows = PARAMETER_ROWS[2 if is_tall else 3]
     right, side, top = stage.width + GAP, SIDE_CHARACTERS * ADVANCE, GAP // 2
@@ -92,18 +92,18 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
         panels_at_right |= {"parameters": rows, "cursors": cursors}
     else:
         down = stage.height + GAP
-        boxes["parameters"] = Box(GAP, down, stage.width - GAP, rows * ROW)
-        boxes["cursors"] = Box(GAP, down + rows * ROW, stage.width - GAP, cursors * ROW)
+        boxes["parameters"] = PageBox(GAP, down, stage.width - GAP, rows * ROW)
+        boxes["cursors"] = PageBox(GAP, down + rows * ROW, stage.width - GAP, cursors * ROW)
     for name, rows in (panels_at_right | {"pixels": 3, "history": 0}).items():
-        boxes[name] = Box(right, top, side, (rows or (bottom - top) // ROW) * ROW)
+        boxes[name] = PageBox(right, top, side, (rows or (bottom - top) // ROW) * ROW)
         top += rows * ROW + (0 if name == "parameters" else GAP)
     places, left = [], GAP
     for label in buttons:
-        places.append(Box(left, bottom + 4, (len(label) + 2) * ADVANCE, BUTTON_LINES))
+        places.append(PageBox(left, bottom + 4, (len(label) + 2) * ADVANCE, BUTTON_LINES))
         left += places[-1].width + 4
     whole = right + side + GAP
-    bar = Box(GAP, bottom + BUTTON_LINES + 9, whole - 2 * GAP, BAR_LINES)
-    boxes["status"] = status = Box(GAP, bar.top + bar.height + 3, whole - 2 * GAP, ROW)
+    bar = PageBox(GAP, bottom + BUTTON_LINES + 9, whole - 2 * GAP, BAR_LINES)
+    boxes["status"] = status = PageBox(GAP, bar.top + bar.height + 3, whole - 2 * GAP, ROW)
     return PageLayout(whole, status.top + ROW + 1, zoom, stage, field, boxes, tuple(places), bar)
 
 

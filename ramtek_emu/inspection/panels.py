@@ -104,7 +104,7 @@ def parameters(session: Inspection) -> list[Line]:
     for name, value in parameter_texts(display).items():
         differs, moved = value != reset[name], value != session.before.get(name, value)
         color = ORANGE if moved else WHITE if differs else GRAY
-        line = Span(f"{name:13}", GRAY), Span(f"{'*' if differs else ' '}{value}", color)
+        line = Span(f"{name:12}", GRAY), Span(f"{'*' if differs else ' '}{value}", color)
         swatch = (Span(" "), word_spans(session, swatches[name])[0]) if name in swatches else ()
         lines.append((*line, *swatch))
     return lines
@@ -129,7 +129,7 @@ def cursors(session: Inspection) -> list[Line]:
         }
         on = " ".join(name for name, is_on in switches.items() if is_on)
         text = Span(f"{cursor['element']},{cursor['line']} {on}", WHITE if on else GRAY)
-        lines.append((Span(f"cursor {number}      ", GRAY), text))
+        lines.append((Span(f"cursor {number}     ", GRAY), text))
     return lines
 
 

@@ -54,7 +54,7 @@ Selection = Window | EntryRange | None
 """A rectangle of the memory, entries, or nothing."""
 
 
-class Work(NamedTuple):
+class PendingSearch(NamedTuple):
     """A search that runs in pieces, and the inspection with its result."""
 
     search: Search[Any]
@@ -83,7 +83,7 @@ class Inspection:
     """The number of instructions that a paused host may still execute."""
     awaited: Callable[[], bool] | None = None
     """Whether the last instruction is what a paused host's instructions are let through for."""
-    work: Work | None = None
+    work: PendingSearch | None = None
     pointer: Point | None = None
     pointed_entry: int | None = None
     """The entry under the pointer, on the page of entries."""
@@ -205,7 +205,7 @@ def _first_listed(session: Inspection, number: int) -> int:
     return min(moved(stream, number, -(rows // 3)), moved(stream, len(stream), 1 - rows))
 
 
-# Work in pieces.
+# PendingSearch in pieces.
 
 
 def tick(session: Inspection) -> Inspection:
@@ -278,12 +278,12 @@ def go_on(session: Inspection) -> Inspection:
     return _followed(session)
 
 
-def _started(session: Inspection, what: str, work: Work) -> Inspection:
+def _started(session: Inspection, what: str, work: PendingSearch) -> Inspection:
     session = replace(session, work=work, message=f"searching for {what} ... Esc stops")
     return _worked(session, work) if session.number == session.target else session
 
 
-def _worked(session: Inspection, work: Work) -> Inspection:
+def _worked(session: Inspection, work: PendingSearch) -> Inspection:
     end = time.monotonic() + PIECE_SECONDS
     try:
         next(work.search)
@@ -334,7 +334,7 @@ def find(session: Inspection, back: bool = False) -> Inspection:
         where = "before" if back else "after"
         return replace(session, message=f"no {text} {where} instruction {target:,}")
 
-    return _started(session, text, Work(next_with(stream, text, numbers), found))
+    return _started(session, text, PendingSearch(next_with(stream, text, numbers), found))
 
 
 def next_change(session: Inspection, back: bool = False) -> Inspection:
@@ -364,7 +364,7 @@ def next_change(session: Inspection, back: bool = False) -> Inspection:
         where = "before" if back else "after"
         return tell(session, f"{selection_text(selection)}: no change {where} instruction {target:,}")
 
-    return _started(session, f"a change of {selection_text(selection)}", Work(changes, found))
+    return _started(session, f"a change of {selection_text(selection)}", PendingSearch(changes, found))
 
 
 def select(session: Inspection, selection: Selection, is_final: bool = True) -> Inspection:
@@ -390,7 +390,7 @@ def select(session: Inspection, selection: Selection, is_final: bool = True) -> 
     def found(session: Inspection, writes: Sequence[Write]) -> Inspection:
         return replace(session, writes=tuple(reversed(writes)), message="")
 
-    return _started(session, f"writes of {selection_text(selection)}", Work(search, found))
+    return _started(session, f"writes of {selection_text(selection)}", PendingSearch(search, found))
 
 
 def next_write(session: Inspection, back: bool) -> Inspection:
@@ -507,7 +507,10 @@ def parameter_texts(display: Ramtek9300) -> dict[str, str]:
     values = {name: state["parameters"][name] for name in PARAMETERS}
     values |= {"saved": len(state["processor"]["saved"])}
     values |= {"next entry": state["lookup_table"]["table_address"]}
-    return {name.replace("_", " "): value_text(name, value) for name, value in values.items()}
+    short = {"display_class": "class", "origin_at_bottom": "at bottom"}
+    return {
+        short.get(name, name.replace("_", " ")): value_text(name, value) for name, value in values.items()
+    }
 
 
 def value_text(name: str, value: Any) -> str:

@@ -45,7 +45,7 @@ Line = tuple[Span, ...]
 """A row of text."""
 
 
-class Box(NamedTuple):
+class PageBox(NamedTuple):
     """A rectangle of pixels: left and top, width and height."""
 
     left: int

@@ -21,7 +21,7 @@ from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import EntryRange, inspection_of, selection_text, tell, turn_to
 from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.monitor.boxes import ADVANCE, BLACK, WHITE, Box
+from ramtek_emu.monitor.boxes import ADVANCE, BLACK, WHITE, PageBox
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.sessions import Steps, at_rest, session_of, text_of
@@ -37,16 +37,16 @@ def page_of(session: Steps) -> InspectorPage:
     return InspectorPage(session.state, layout, BUTTONS, [("Esc", "back")], "a page")
 
 
-def boxes_of(layout: PageLayout) -> dict[str, Box]:
+def boxes_of(layout: PageLayout) -> dict[str, PageBox]:
     buttons = {f"button {number}": box for number, box in enumerate(layout.buttons)}
     return {"stage": layout.stage, **layout.boxes, **buttons, "bar": layout.bar}
 
 
-def region(box: Box) -> Window:
+def region(box: PageBox) -> Window:
     return Window(box.left, box.top, box.left + box.width - 1, box.top + box.height - 1)
 
 
-def is_within(inner: Box, outer: Box) -> bool:
+def is_within(inner: PageBox, outer: PageBox) -> bool:
     return region(inner).intersection(region(outer)) == region(inner)
 
 
@@ -62,7 +62,7 @@ def patterned(name: str) -> Steps:
 def test_no_part_of_a_page_covers_another(elements: int, lines: int, cursors: int) -> None:
     layout = layout_of(elements, lines, cursors, BUTTONS)
     boxes = boxes_of(layout)
-    whole = Box(0, 0, layout.elements, layout.lines)
+    whole = PageBox(0, 0, layout.elements, layout.lines)
     assert [name for name, box in boxes.items() if not is_within(box, whole)] == []
     pairs = itertools.combinations(boxes.items(), 2)
     meet = [(a, b) for (a, one), (b, other) in pairs if not region(one).intersection(region(other)).is_empty]
