@@ -81,13 +81,10 @@ SHEET: Final = """
 @lru_cache
 def characters() -> Dots:
     """The dots of the 256 character codes, (256, 9, 7), read-only; codes 128 to 255 repeat 0 to 127."""
-    rows = SHEET.strip().split("\n\n")
+    rows = [line.split() for line in SHEET.splitlines() if line]
+    dots = np.array([[list(shape) for shape in row] for row in rows]) == "#"
     shapes = np.zeros((256, CELL_LINES, CELL_ELEMENTS), np.bool_)
-    code = 32
-    for row in rows:
-        dots = np.array([[list(shape) for shape in line.split()] for line in row.splitlines()]) == "#"
-        shapes[code : code + 16, 1:, 1:6] = dots.transpose(1, 0, 2)
-        code += 16
+    shapes[32:128, 1:, 1:6] = dots.reshape(6, 8, 16, 5).swapaxes(1, 2).reshape(96, 8, 5)
     shapes[128:] = shapes[:128]
     shapes.flags.writeable = False
     return shapes
