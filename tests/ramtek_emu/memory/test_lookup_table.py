@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, instructions
+from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, instructions
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.testing import words
 
@@ -83,6 +83,11 @@ def test_full_scale_of_four_bits_is_full_scale_of_eight() -> None:
     table = LookupTable(PRINCETON_9300)
     table.load(0, np.array([0x0F08, 0xF000], np.uint16))
     assert table.entries[:2].tolist() == [[255, 0, 136], [0, 0, 0]]
+
+
+def test_colors_that_do_not_fit_are_not_sent() -> None:
+    with pytest.raises(ColorsError):
+        instructions.load_entries(7, [[0, 256, 0]])
 
 
 def test_the_word_pair_is_green_and_blue_then_red() -> None:
