@@ -49,8 +49,8 @@ class FrameBuffer:
         return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
 
     def state(self) -> dict[str, Any]:
-        """The words; the array is this memory itself, so copy what you keep."""
-        return {"words": self.words}
+        """The words, (lines, elements) uint16."""
+        return {"words": self._words.copy()}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Write the words of a state."""
