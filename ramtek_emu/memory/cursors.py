@@ -17,7 +17,7 @@ other cursors.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -95,6 +95,23 @@ class Cursors:
 
     def __contains__(self, number: int) -> bool:
         return 0 <= number < len(self.all)
+
+    def state(self) -> dict[str, Any]:
+        """The cursors, the switches, and the cursors of each tracking device as pairs (device, mask)."""
+        return {
+            "cursors": tuple(dict(vars(cursor)) for cursor in self.all),
+            "track": self.track,
+            "enter_is_pressed": self.enter_is_pressed,
+            "tracking_devices": sorted(self.driven.items()),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Set the cursors and switches of a state."""
+        for cursor, values in zip(self.all, state["cursors"], strict=True):
+            vars(cursor).update(values)
+        self.track, self.enter_is_pressed = state["track"], state["enter_is_pressed"]
+        self.driven = dict(state["tracking_devices"])
+        self.shape_changes += 1
 
     def place(self, number: int, element: int, line: int, state: int) -> None:
         """Move a cursor and set its state, as the host does."""

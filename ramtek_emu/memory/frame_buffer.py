@@ -10,7 +10,7 @@ Assumed: outside the memory every word reads as 0.
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -59,6 +59,15 @@ class FrameBuffer:
     def __repr__(self) -> str:
         lines, elements = self._words.shape
         return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
+
+    def state(self) -> dict[str, Any]:
+        """The words; the array is this memory itself, so copy what you keep."""
+        return {"words": self.words}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Write the words of a state."""
+        self._words[...] = state["words"]
+        self.written += self._words.size
 
     def write(self, words: object, left: int = 0, top: int = 0) -> None:
         """Write a (lines, elements) array from Python; WordsError if a word or the window does not fit."""

@@ -11,7 +11,7 @@ Assumed: the entries are black at power-on; no source says what a cold table sho
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -59,6 +59,16 @@ class LookupTable:
     def __repr__(self) -> str:
         format = self.entry_format.name
         return f"LookupTable({self.size} entries, {format}, {self.written} words written)"
+
+    def state(self) -> dict[str, Any]:
+        """The entries as 0x00RRGGBB, and the address counter; the array is this memory itself."""
+        return {"entries": self.packed, "table_address": self.address}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Write the entries of a state, and set the address counter, which wraps."""
+        self._packed[...] = state["entries"] & 0xFFFFFF
+        self.address = state["table_address"] % self.word_count
+        self._note(0, self.size, self.word_count)
 
     @property
     def addressed_entry(self) -> int:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Any, Final
 
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.instruction_set.table import Flags
@@ -96,6 +96,14 @@ class Parameters:
             whole_window=window,
             whole_word=configuration.largest_word,
         )
+
+    def state(self) -> dict[str, Any]:
+        """The values by their names."""
+        return dict(vars(self))
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Set the values of a state."""
+        vars(self).update(state)
 
     def operand(self, name: str) -> tuple[int, ...]:
         """The words of an operand."""

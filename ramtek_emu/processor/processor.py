@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from enum import IntFlag
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -78,6 +78,24 @@ class Processor:
     def __repr__(self) -> str:
         state = f"{self.waiting} words of replies waiting, status {self.status.name}"
         return f"Processor({self.configuration.name}, {state})"
+
+    def state(self) -> dict[str, Any]:
+        """All but the current parameters and the replies; the array is this memory itself."""
+        return {
+            "saved": [parameters.state() for parameters in self.saved],
+            "loaded_characters": self.loaded_characters,
+            "illegal": self._illegal,
+            "illegal_words": self.illegal_words,
+            "without_effect": self.unimplemented,
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Set the values of a state, and drop the replies."""
+        self.saved[:] = [Parameters(**values) for values in state["saved"]]
+        self.loaded_characters[...] = state["loaded_characters"]
+        self._illegal = state["illegal"]
+        self.illegal_words, self.unimplemented = state["illegal_words"], state["without_effect"]
+        self.clear_replies()
 
     def current_parameters(self) -> Parameters:
         """The parameters. POPE and RSET replace the object, so ask for it each time."""

@@ -124,15 +124,17 @@ class ScanOut:
         )
         return Stamp(self._lookup_table.written, self._marks(), rest)
 
-    @property
-    def monitor_image(self) -> tuple[int, PackedColors]:
-        """With a beam: the number of lines painted since power-on, and the image on the monitor."""
-        return self._painted, self._monitor_image
+    def state(self) -> dict[str, Any]:
+        """With a beam: the number of lines painted since power-on, and the image on the monitor.
 
-    @monitor_image.setter
-    def monitor_image(self, shown: tuple[int, PackedColors]) -> None:
-        self._painted = shown[0]
-        self._monitor_image[...] = shown[1]
+        The image is (lines, elements) uint32, 0x00RRGGBB; the array is the image itself.
+        """
+        return {"lines_painted": self._painted, "monitor_image": self._monitor_image}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Show the monitor image of a state."""
+        self._painted = state["lines_painted"]
+        self._monitor_image[...] = state["monitor_image"]
 
     def scan_out_into(self, pixels: PackedColors) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
