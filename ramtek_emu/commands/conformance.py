@@ -30,7 +30,9 @@ Examples:
 )
 @click.argument("command", nargs=-1)
 @click.pass_context
-def conformance(context: click.Context, only: tuple[str, ...], seconds: float, command: tuple[str, ...]) -> None:
+def conformance(
+    context: click.Context, only: tuple[str, ...], seconds: float, command: tuple[str, ...]
+) -> None:
     """Run the claims of the conformance suite and print a table; the exit code is 1 if a claim fails.
 
     Without COMMAND they run on the display of this package. COMMAND is an emulator: for each claim it is

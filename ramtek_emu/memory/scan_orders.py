@@ -72,10 +72,6 @@ class Window(NamedTuple):
             min(self.bottom, other.bottom),
         )
 
-    def moved(self, elements: int, lines: int) -> Window:
-        """The window moved to the right and down."""
-        return Window(self.left + elements, self.top + lines, self.right + elements, self.bottom + lines)
-
 
 class ScanOrder(NamedTuple):
     """The directions of one of the eight codes."""
