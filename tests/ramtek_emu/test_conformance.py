@@ -100,7 +100,7 @@ def test_an_emulator_that_hangs_is_ended_and_fails() -> None:
     hangs = (sys.executable, "-c", "import time; time.sleep(600)")
     assert failure_on(POINT, hangs, 0.5) == "the emulator did not end in 0.5 s"
     assert "COMMAND must be a program, not 'nowhere'" in run("--", "nowhere", code=2)
-    assert "--only must be the key of a claim, not NOTHING" in run("--only", "NOTHING", code=2)
+    assert "--only must be the key of a claim, not NO SUCH KEY" in run("--only", "NO SUCH KEY", code=2)
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node runs JavaScript")
