@@ -333,9 +333,9 @@ class Twin:
         places = self.scan(count, pairs)
         words = [self.get(place) & self.p["read_mask"][0] for place in places] or [0] * count
         if pairs:
-            row = bytes([word & 0xFF for word in words] + [0] * (count % 2))
-            order = "little" if self.low & 8 else "big"
-            words = [int.from_bytes(row[n : n + 2], order) for n in range(0, len(row), 2)]
+            row = [*words, 0][: count + count % 2]
+            low, high = (0, 1) if self.low & 8 else (1, 0)
+            words = [row[n + low] & 0xFF | (row[n + high] & 0xFF) << 8 for n in range(0, len(row), 2)]
         self.replies += words
 
     def wr(self) -> None:

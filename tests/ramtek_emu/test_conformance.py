@@ -42,7 +42,9 @@ def test_the_claims_cover_the_instruction_set_and_say_where_they_come_from() -> 
     assert {claim.source.partition(" ")[0] for claim in CLAIMS} <= keys
     assert {claim.kind for claim in CLAIMS} == {"sourced", "assumed"}
     assert {checked_configuration(claim.display).name for claim in CLAIMS} == set(CONFIGURATIONS)
-    names, operands, cut = set(), set(), set()
+    names: set[str] = set()
+    operands: set[str] = set()
+    cut: set[str] = set()
     for claim in CLAIMS:
         if claim.subject != "listings" and not any(write.startswith(JOYSTICK) for write in claim.writes):
             for instruction in Decoder(checked_configuration(claim.display)).feed(claim.words):
