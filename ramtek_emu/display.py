@@ -83,6 +83,15 @@ class Ramtek9300:
         for name, part in self._parts().items():
             part.restore(state[name])
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        beside = self.resets, self.words_received, self.decoder, self.processor.replies
+        return type(self), (self.configuration,), (self.state(), beside)
+
+    def __setstate__(self, saved: tuple[Any, ...]) -> None:
+        state, beside = saved
+        self.restore(state)
+        self.resets, self.words_received, self.decoder, self.processor.replies = beside
+
     def _parts(self) -> dict[str, Part]:
         """The parts that have a state; the beam paints the monitor image, so it comes first."""
         timed: dict[str, Part] = {} if self.beam is None else {"beam": self.beam, "scan_out": self.scan_out}

@@ -23,7 +23,7 @@ import json
 import os
 import struct
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import reduce
 from operator import getitem
@@ -63,12 +63,11 @@ TEXTS: Final[dict[str, dict[str, tuple[str, ...]]]] = {
         "enter_is_pressed": ("cursors", "enter_is_pressed"),
         "driven": ("cursors", "tracking_devices"),
     },
+    "glass": {"lines": ("scan_out", "lines_painted"), "pixels": ("scan_out", "monitor_image")},
 }
-"""The text chunks and their fields, each with its place in `Ramtek9300.state()`."""
-MONITOR: Final[dict[str, dict[str, tuple[str, ...]]]] = {
-    "glass": {"lines": ("scan_out", "lines_painted"), "pixels": ("scan_out", "monitor_image")}
-}
-"""The text chunk that the snapshot of a display with a beam has besides."""
+"""The text chunks and their fields, each with its place in `Ramtek9300.state()`; "glass" only with a beam."""
+NO_TIME: Final = {"beam": {"nanoseconds": 0}}
+"""The beam in the snapshot of a display without one."""
 
 
 def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = False) -> None:
@@ -89,35 +88,30 @@ def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bo
 def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
     """The display of a snapshot file; MissingInputError if it cannot be read, SnapshotError if not valid."""
     try:
+        # A pipe might never end.
         if not Path(path).is_file():
-            raise MissingInputError(f"a snapshot must be a file, not {os.fspath(path)}; check the name")
+            raise OSError("there is none")
         with open(path, "rb") as file:
             data = file.read(MOST_FILE + 1)
-    except MissingInputError:
-        raise
     except (OSError, ValueError) as cause:
         raise MissingInputError(
             f"a snapshot must be a file that can be read, not {os.fspath(path)!r} ({reason_of(cause)}); "
             "check the name"
         ) from None
     if len(data) > MOST_FILE:
-        raise SnapshotError(
-            f"a snapshot must be at most {MOST_FILE} bytes, not more ({os.fspath(path)}); take a new one"
-        )
+        raise refusal(f"have at most {MOST_FILE} bytes", f"more ({os.fspath(path)})")
     return display_of(data)
 
 
 def snapshot_bytes(display: Ramtek9300) -> bytes:
     """The display as the bytes of a PNG file."""
-    state = NO_TIME | display.state()
-    configuration = display.configuration
+    state, configuration = NO_TIME | display.state(), display.configuration
     timing = configuration.timing and vars(configuration.timing)
-    plain: dict[str, Any] = {
-        "configuration": vars(configuration)
-        | {"entry_format": configuration.entry_format.name, "timing": timing}
-    }
-    for keyword, places in texts_of(configuration).items():
-        plain[keyword] = {field: to_plain(reduce(getitem, place, state)) for field, place in places.items()}
+    kinds = {"entry_format": configuration.entry_format.name, "timing": timing}
+    plain: dict[str, Any] = {"configuration": vars(configuration) | kinds}
+    for keyword, places in TEXTS.items():
+        if keyword != "glass" or timing:
+            plain[keyword] = {name: to_plain(reduce(getitem, path, state)) for name, path in places.items()}
     texts = {keyword: json.dumps(values, separators=(",", ":")) for keyword, values in plain.items()}
     return picture_bytes(display.words, {"Software": SOFTWARE} | texts)
 
@@ -127,33 +121,24 @@ def display_of(data: bytes) -> Ramtek9300:
     words, texts = picture_of(data)
     if texts.get("Software") != SOFTWARE:
         raise refusal(f"be of the format {SOFTWARE!r}", repr(texts.get("Software", "unknown")[:40]))
-    configuration = configuration_of(_fields(texts, "configuration"))
+    configuration = configuration_of(_object(texts, "configuration"))
     if words.shape != (configuration.lines, configuration.elements):
         raise refusal(
             f"have {configuration.elements} x {configuration.lines} words, as its configuration says",
             f"{words.shape[1]} x {words.shape[0]}",
         )
-    if int(words.max()) > configuration.largest_word:
-        raise value_refusal("a word", f"0 to {configuration.largest_word}", int(words.max()))
+    whole_number(int(words.max()), (0, configuration.largest_word), "a word")
     display = Ramtek9300(configuration)
     state: dict[str, Any] = NO_TIME | display.state() | {"frame_buffer": {"words": words}}
     state["processor"]["saved"] = [state["parameters"]]
-    for keyword, places in texts_of(configuration).items():
-        values = _fields(texts, keyword, *places)
-        for field, (*path, name) in places.items():
-            part = reduce(getitem, path, state)
-            part[name] = from_plain(part[name], values[field], ".".join([*path, name]))
+    for keyword, places in TEXTS.items():
+        if keyword != "glass" or configuration.timing is not None:
+            values = _object(texts, keyword, *places)
+            for name, (*path, last) in places.items():
+                part = reduce(getitem, path, state)
+                part[last] = from_plain(part[last], values[name], ".".join([*path, last]))
     display.restore(state)
     return display
-
-
-NO_TIME: Final = {"beam": {"nanoseconds": 0}}
-"""The beam in the snapshot of a display without one."""
-
-
-def texts_of(configuration: Configuration) -> dict[str, dict[str, tuple[str, ...]]]:
-    """The text chunks of a display, but that of its configuration."""
-    return TEXTS if configuration.timing is None else TEXTS | MONITOR
 
 
 def configuration_of(plain: dict[str, Any]) -> Configuration:
@@ -174,7 +159,7 @@ def configuration_of(plain: dict[str, Any]) -> Configuration:
         ) from None
 
 
-def _fields(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
+def _object(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
     """The JSON object of a text chunk; SnapshotError if it is missing or its fields are not `names`."""
     try:
         values = json.loads(texts.get(keyword, "null"))
@@ -204,20 +189,21 @@ MOST_LISTED: Final = {"saved": MOST_SAVED, "tracking_devices": 256}
 """Limit: the most items of a list, by name."""
 
 
-def to_plain(value: Any) -> Any:
-    """The value for JSON: arrays become base64, the monitor image deflated."""
-    if not isinstance(value, np.ndarray):
-        if isinstance(value, dict):
-            return {key: to_plain(item) for key, item in value.items()}
-        return [to_plain(item) for item in value] if isinstance(value, tuple | list) else value
-    if value.dtype == np.bool_:
-        data = np.packbits(value).tobytes()
-    elif value.ndim == 2:
-        # The highest byte of a packed color is 0.
-        data = zlib.compress(value.view(np.uint8).reshape(-1, 4)[:, :3].tobytes(), 6)
-    else:
-        data = value.tobytes()
+def packed(array: AnyArray) -> str:
+    """An array as base64: dots as bits, the monitor image deflated, without the bytes that are 0."""
+    data = np.packbits(array).tobytes() if array.dtype == np.bool_ else array.tobytes()
+    if array.ndim == 2 and array.dtype == np.uint32:
+        data = zlib.compress(array.view(np.uint8).reshape(-1, 4)[:, :3].tobytes(), 6)
     return base64.b64encode(data).decode("ascii")
+
+
+def to_plain(value: Any, text_of: Callable[[AnyArray], str] = packed) -> Any:
+    """A value of a state for JSON; `text_of` makes arrays to texts."""
+    if isinstance(value, np.ndarray):
+        return text_of(value)
+    if isinstance(value, dict):
+        return {key: to_plain(item, text_of) for key, item in value.items()}
+    return [to_plain(item, text_of) for item in value] if isinstance(value, tuple | list) else value
 
 
 def from_plain(pattern: Any, value: Any, place: str) -> Any:

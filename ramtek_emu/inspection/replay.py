@@ -15,6 +15,8 @@ from operator import attrgetter
 from time import perf_counter, thread_time
 from typing import Final
 
+import numpy as np
+
 from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.states import Packer, State, size_of, thinned

@@ -73,7 +73,8 @@ class Processor:
         self.unimplemented = 0
         """The number of instructions without effect, known by name only; it never decreases."""
         self._illegal = False
-        self._replies = bytearray()
+        self.replies = bytearray()
+        """The bytes of the replies that the host has not read."""
 
     def __repr__(self) -> str:
         state = f"{self.waiting} words of replies waiting, status {self.status.name}"
@@ -119,12 +120,12 @@ class Processor:
 
     def clear_replies(self) -> None:
         """Drop the replies that the host has not read."""
-        self._replies.clear()
+        self.replies.clear()
 
     @property
     def waiting(self) -> int:
         """The number of words that the host can receive."""
-        return len(self._replies) // 2
+        return len(self.replies) // 2
 
     def points(self, instruction: Instruction, columns: int = 2) -> Numbers:
         """The data as (n, columns) signed numbers; an incomplete row at the end is dropped."""
@@ -149,7 +150,7 @@ class Processor:
 
     def reply(self, words: Words) -> None:
         """Store words until the host receives them."""
-        self._replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
+        self.replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
 
     def take_reply(self, count: int) -> Words:
         """The next `count` words of the replies; ReplyError if fewer are waiting."""
@@ -158,8 +159,8 @@ class Processor:
                 f"the words received must be 0 to {self.waiting}, which wait, not {count!r}; "
                 "send an instruction that reads them first"
             )
-        words = np.frombuffer(bytes(self._replies[: 2 * count]), np.uint16).copy()
-        del self._replies[: 2 * count]
+        words = np.frombuffer(bytes(self.replies[: 2 * count]), np.uint16).copy()
+        del self.replies[: 2 * count]
         return words
 
     def colors(self, instruction: Instruction) -> tuple[int, int]:

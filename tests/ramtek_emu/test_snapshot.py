@@ -181,7 +181,12 @@ def test_mutated_snapshots_are_read_or_refused(count: int) -> None:
             "a configuration that can be built: elements must be",
         ),
         ("configuration", '"elements":13', '"elements":-1', "must have a configuration that can be built"),
-        ("configuration", '"planes":10', '"planes":1', "a word of a snapshot must be 0 to 1, not "),
+        (
+            "configuration",
+            '"planes":10',
+            '"planes":1',
+            "a word of a snapshot must be a whole number from 0 to 1, not ",
+        ),
         ("configuration", '"PAIR_24"', '"PAIR_99"', "entry_format must be an EntryFormat"),
         ("configuration", '"name":"SMALL"', f'"name":"{60 * "a"}"', ""),
         ("configuration", '"name":"SMALL"', f'"name":"{61 * "a"}"', "name of a snapshot must be a name"),

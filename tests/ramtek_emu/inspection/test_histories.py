@@ -29,7 +29,7 @@ def watched_writes(stream: Stream, line: int, element: int) -> list[Write]:
     for number in range(1, len(stream) + 1):
         twin = copy.deepcopy(display)
         before = int(display.words[line, element])
-        twin.frame_buffer.write(np.array([[before ^ 0x3FF]], np.uint16), element, line)
+        twin.frame_buffer.fill(Window(element, line, element, line), before ^ 0x3FF)
         for each in (display, twin):
             each.send(stream.words_between(number - 1, number))
         after = int(display.words[line, element])
