@@ -40,7 +40,7 @@ def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
 
 SLICED = ("WVL", "WVU", "CIRC", "FILL", "COPY")
 """Instructions that can be executed in slices."""
-DRAWING = (*SLICED, "ERS", "WI", "RI", "WT", "WR", "WPT", "WRP", "SET")
+DRAWING = (*SLICED, "ERS", "WI", "RI", "WT", "WR", "WC", "WPT", "WRP", "SET")
 
 
 @st.composite
@@ -69,7 +69,7 @@ def drawing_instructions(
     }
     given_operands = draw(st.fixed_dictionaries({}, optional=operands))
     name = draw(st.sampled_from(names))
-    if name == "WC":
+    if name == "SET":
         numbers = draw(st.lists(st.integers(-20, 20), min_size=5, max_size=5))
         given_operands["conic"] = [*numbers, draw(st.integers(0, 60))]
     flags = draw(st.sampled_from([0, 0x40, 0x80, 0xC0])) | draw(st.sampled_from([0, 8, 0x10, 0x20]))
