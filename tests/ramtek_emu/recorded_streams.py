@@ -7,7 +7,7 @@ output call captured. The functions of the other libraries write these words for
 
 from __future__ import annotations
 
-from ramtek_emu import GMR_9300, Configuration
+from ramtek_emu import FAMILY, Configuration
 from ramtek_emu.arrays import Words
 from ramtek_emu.conformance.claims import all_claims, words_of
 from ramtek_emu.instruction_set.disassembler import items
@@ -15,7 +15,7 @@ from ramtek_emu.instruction_set.disassembler import items
 words = words_of
 
 
-def listing(stream: bytes, configuration: Configuration = GMR_9300) -> list[str]:
+def listing(stream: bytes, configuration: Configuration = FAMILY) -> list[str]:
     """The lines of the listing of a stream."""
     return [line for item in items([stream], configuration) for line in item.lines()]
 
