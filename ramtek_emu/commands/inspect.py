@@ -117,16 +117,16 @@ def refuse_outside(thing: str, value: int | None, most: int, place: str = "") ->
 
 def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until: int, as_json: bool) -> None:
     """Print the instructions that wrote a word or an entry, the newest first."""
-    from ramtek_emu.inspection.histories import finished, writes_to_entry, writes_to_pixel
+    from ramtek_emu.inspection.histories import EntryRange, finished, history_of
+    from ramtek_emu.memory.scan_orders import Window
 
+    selection: Window | EntryRange
     if who is not None:
         line, element = who
-        writes = finished(writes_to_pixel(replay, line, element, until))
-        thing = f"line {line}, element {element}"
+        selection, thing = Window(element, line, element, line), f"line {line}, element {element}"
     else:
-        writes = finished(writes_to_entry(replay, entry or 0, until))
-        thing = f"entry {entry}"
-    writes.reverse()
+        selection, thing = EntryRange(entry or 0, (entry or 0) + 1), f"entry {entry}"
+    writes = finished(history_of(replay, selection, until))[::-1]
     if as_json:
         rows = (json.dumps(plain_write(replay, write)) for write in writes)
         click.echo("[" + ",\n ".join(rows) + "]")

@@ -58,10 +58,6 @@ class Stamp(NamedTuple):
     """All else that a field depends on."""
 
 
-CACHED: Final = ("_indices", "_indices_of", "_lines_with", "_gray")
-"""Attributes that are computed from the memories; a copy computes its own."""
-
-
 class ScanOut:
     """Makes fields from a frame buffer, a lookup table and cursors."""
 
@@ -89,9 +85,6 @@ class ScanOut:
         # With a beam: the image on the monitor, and the number of lines painted since power-on.
         self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
         self._painted = 0
-        self._clear_caches()
-
-    def _clear_caches(self) -> None:
         # np.take is fastest with indices of type intp; they are updated when words were written. Measured:
         # mode "clip" takes 1.3 times as long; converting the words for each field, 32 lines at a time, 1.8
         # times; indices on huge pages take 3 % less, which is not worth the memory.
@@ -101,13 +94,6 @@ class ScanOut:
         shown_words = self._frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, PackedColors] = (-1, self._lookup_table.packed)
-
-    def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in vars(self).items() if name not in CACHED}
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        vars(self).update(state)
-        self._clear_caches()
 
     def __repr__(self) -> str:
         return f"ScanOut({self.elements} x {self.lines})"
@@ -124,15 +110,17 @@ class ScanOut:
         )
         return Stamp(self._lookup_table.written, self._marks(), rest)
 
-    @property
-    def monitor_image(self) -> tuple[int, PackedColors]:
-        """With a beam: the number of lines painted since power-on, and the image on the monitor."""
-        return self._painted, self._monitor_image
+    def state(self) -> dict[str, Any]:
+        """With a beam: the number of lines painted since power-on, and the image on the monitor.
 
-    @monitor_image.setter
-    def monitor_image(self, shown: tuple[int, PackedColors]) -> None:
-        self._painted = shown[0]
-        self._monitor_image[...] = shown[1]
+        The image is (lines, elements) uint32, 0x00RRGGBB; the array is the image itself.
+        """
+        return {"lines_painted": self._painted, "monitor_image": self._monitor_image}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Show the monitor image of a state."""
+        self._painted = state["lines_painted"]
+        self._monitor_image[...] = state["monitor_image"]
 
     def scan_out_into(self, pixels: PackedColors) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""

@@ -119,7 +119,9 @@ def do(display: Ramtek9300, name: str, value: Any) -> None:
             display.send(np.array([0x0300, address & 0x7FF, 2 * count, *data], np.uint16))
         else:
             first = max(0, address // 2)
-            display.lookup_table.write(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+            display.send(
+                instructions.load_entries(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+            )
     elif name == "write words":
         (line, element), word = value
         word &= display.configuration.largest_word
