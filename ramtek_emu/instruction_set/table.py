@@ -168,6 +168,7 @@ SUBSTANTIATED: Final = (
         0x0E, "WVL", "write linked vectors", "PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c"
     ),
     InstructionFormat(0x0F, "WC", "write a conic", "LIN wc.c, LIN libdoc"),
+    InstructionFormat(0x10, "WPB", "write a plot", "LIN libdoc, LIN fplot.c, opcode from NCAR ramtek.h"),
     InstructionFormat(0x13, "PUSHE", "save the environment", NAME_ALONE, (), extended=True),
     InstructionFormat(0x14, "POPE", "restore the environment", NAME_ALONE, (), extended=True),
     InstructionFormat(0x15, "LPF", "load a character", "LIN lcs.c", CHARACTER_ROWS),
@@ -244,7 +245,6 @@ sources give numbers and names. Their executors say more.
 UNIMPLEMENTED: Final = (
     (0x01, "LOAD", "load a hard register"),
     (0x02, "READ", "read a soft register"),
-    (0x10, "WPB", "write a plot box"),
     (0x11, "SCRX", "scroll along the lines"),
     (0x12, "SCRY", "scroll across the lines"),
     (0x18, "WKB", "write to the keyboard"),
@@ -343,8 +343,11 @@ UNIMPLEMENTED: Final = (
 Hardware: NCAR ramtek.h lists them with a few words each, and no client sends them. SDS has a joke there.
 """
 
+SCROLLS: Final = ("SCRX", "SCRY")
+"""Instructions of the 9300 too. Assumed: from their opcodes, and from the operand SCRO in LIN libdoc."""
+
 FORMATS: Final = SUBSTANTIATED + tuple(
-    InstructionFormat(opcode, name, meaning, "NCAR ramtek.h", extended=True, unimplemented=True)
+    InstructionFormat(opcode, name, meaning, "NCAR ramtek.h", extended=name not in SCROLLS, unimplemented=True)
     for opcode, name, meaning in UNIMPLEMENTED
 )
 """All rows of the instruction table.
