@@ -162,6 +162,7 @@ SUBSTANTIATED: Final = rows_of("""
 0D WR | write a raster of one bit a pixel | LIN wr.c, PRG rast.c
 0E WVL | write linked vectors | LIN wv.c, LIN wvs.c, PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c
 0F WC | write a conic | LIN wc.c, LIN libdoc
+10 WPB | write a plot | LIN libdoc, LIN fplot.c, opcode from NCAR ramtek.h
 13+ PUSHE none | save the environment | NCAR ramtek.h, format assumed
 14+ POPE none | restore the environment | NCAR ramtek.h, format assumed
 15 LPF rows_0_1 rows_2_3 rows_4_5 rows_6_7 rows_8_9 rows_10_11 | load a character | LIN lcs.c
@@ -201,7 +202,7 @@ sources give numbers and names. Their executors say more.
 """
 
 NAMES: Final = """
-01+ LOAD load a hard register; 02+ READ read a soft register; 10 WPB write a plot box;
+01+ LOAD load a hard register; 02+ READ read a soft register;
 11 SCRX scroll along the lines; 12 SCRY scroll across the lines; 18+ WKB write to the keyboard;
 19+ RKB read the keyboard; 1A+ SPS sense the status of peripherals; 1B+ LDL load a display list;
 1C+ RDL read a display list; 1D+ CCM call control memory; 1E+ XIM execute instruction memory;
