@@ -28,9 +28,7 @@ def recorded(name: str) -> Words:
 
 OUTLINE = recorded("rrr: a closed outline")
 SQUARES = recorded("sqap")
-BARS = recorded("band")
 COLOR_MAP = recorded("cmap 3")
-CLEAR = recorded("zp: ERS")
 BYTE_IMAGE = recorded("four by four")
 DECODED = recorded("instructions of five libraries")
-RECORDED = (OUTLINE, SQUARES, BARS, COLOR_MAP, CLEAR, BYTE_IMAGE, DECODED)
+RECORDED = (OUTLINE, SQUARES, recorded("band"), COLOR_MAP, recorded("zp: ERS"), BYTE_IMAGE, DECODED)

@@ -29,7 +29,6 @@ OPERAND_WORDS = (
     (1, 4, 2, 2, 1, 1),
 )
 
-Raster = list[list[int]]
 Place = tuple[int, int]
 
 
@@ -80,10 +79,6 @@ def walk(window: Sequence[int], code: int, start: Place, count: int, pairs: bool
         )
         inner += 1
     return places if count else [start]
-
-
-def field(words: Raster, entries: list[tuple[int, int, int]]) -> list[list[tuple[int, int, int]]]:
-    return [[entries[word] for word in line] for line in words]
 
 
 def line_places(start: Place, end: Place) -> list[Place]:
@@ -222,23 +217,16 @@ class Twin:
         self.replies: list[int] = []
         self.low = 0
         whole = (0, 0, self.size[0] - 1, self.size[1] - 1)
-        self.p: dict[str, tuple[int, ...]] = {
-            name: (0,) * operand.words for name, operand in OPERANDS.items()
-        }
+        self.p: dict[str, tuple[int, ...]] = {name: (0,) * row.words for name, row in OPERANDS.items()}
         self.p |= {"mask": (0xFFFF,), "read_mask": (0xFFFF,), "texture": (0xFFFF, 0), "dimensions": (7, 9)}
         self.p |= {"window": whole, "write_window": whole, "foreground": (self.every_plane,)}
 
     def send(self, instruction: Instruction) -> None:
         """Execute an instruction that draws or reads; SET and others only set their operands."""
-        self.low, self.length, self.data = (
-            instruction.low_byte,
-            instruction.length or 0,
-            instruction.data.tolist(),
-        )
+        self.low, self.length = instruction.low_byte, instruction.length or 0
+        self.data = instruction.data.tolist()
         self.take(dict(instruction.operands))
-        method = getattr(self, instruction.format.name.lower(), None)
-        if method is not None:
-            method()
+        getattr(self, instruction.format.name.lower(), list)()
 
     def take(self, operands: dict[str, tuple[int, ...]]) -> None:
         """Set operands. Windows and start points count from the base before the instruction."""
@@ -402,14 +390,25 @@ class Twin:
             self.put((element, line), self.colors[0])
             self.start = (element, line)
 
+    def wpb(self) -> None:
+        step, axis = STEPS[self.code][0], int(self.code < 4)
+        zero, origin = signed(self.p["base_line"][0]), self.base()[axis]
+        for word in self.data[: self.length // 2]:
+            value = signed(word) + origin
+            for number in range(max(1, self.p["dimensions"][0])):
+                place = [self.start[0] + number * step[0], self.start[1] + number * step[1]]
+                for place[axis] in range(max(min(zero, value), 0), min(max(zero, value), 99) + 1):
+                    self.put((place[0], place[1]), self.colors[0])
+            jump = signed(self.p["spacing"][0])
+            self.start = self.start[0] + jump * step[0], self.start[1] + jump * step[1]
+
     def fill(self) -> None:
         mask, foreground = self.p["read_mask"][0], self.colors[0]
         first, seed = self.start, self.get(self.start) & mask
         replaces = self.length >= 2 and self.data[0] != 0
 
         def is_open(place: Place) -> bool:
-            word = self.get(place) & mask
-            until = foreground & self.every_plane & mask
+            word, until = self.get(place) & mask, foreground & self.every_plane & mask
             fits = word == seed if replaces else word != until
             return fits and self.holds(place) and inside(place, self.p["write_window"])
 

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
 from ramtek_emu.instruction_set.instruction import OperandValue, encode, normal
-from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Window
 
 SMALL = Configuration(name="SMALL", elements=13, lines=9, planes=10)
 
 scan_codes = st.integers(0, 7)
 masks = st.integers(0, 1023) | st.just(0xFFFF)
-points = st.builds(Point, st.integers(-6, 18), st.integers(-6, 14))
 
 
 @st.composite
@@ -40,7 +39,7 @@ def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
 
 SLICED = ("WVL", "WVU", "CIRC", "FILL", "COPY")
 """Instructions that can be executed in slices."""
-DRAWING = (*SLICED, "ERS", "WI", "RI", "WT", "WR", "WC", "WPT", "WRP", "SET")
+DRAWING = (*SLICED, "ERS", "WI", "RI", "WT", "WR", "WC", "WPB", "WPT", "WRP", "SET")
 
 
 @st.composite
@@ -60,6 +59,7 @@ def drawing_instructions(
         "scan_order": st.integers(0, 8),
         "dimensions": st.tuples(st.integers(0, 9), st.integers(0, 17)),
         "spacing": st.tuples(small, small),
+        "base_line": coordinate,
         "scale": st.sampled_from([0, 0, 1, 0x0100, 0x0201]),
         "start": st.tuples(coordinate, coordinate),
         "read_mask": masks,
@@ -73,9 +73,9 @@ def drawing_instructions(
         numbers = draw(st.lists(st.integers(-20, 20), min_size=5, max_size=5))
         given_operands["conic"] = [*numbers, draw(st.integers(0, 60))]
     flags = draw(st.sampled_from([0, 0x40, 0x80, 0xC0])) | draw(st.sampled_from([0, 8, 0x10, 0x20]))
-    data = sent_words(draw(st.lists(coordinate | st.integers(0, 0xFFFF), max_size=40)))
-    if name in ("WVL", "WVU", "CIRC", "WC", "WPT", "COPY"):
-        data = sent_words(draw(st.lists(coordinate, max_size=24)))
+    has_points = name in ("WVL", "WVU", "CIRC", "WC", "WPT", "COPY")
+    number = coordinate if has_points else coordinate | st.integers(0, 0xFFFF)
+    data = sent_words(draw(st.lists(number, max_size=24 if has_points else 40)))
     length = max(0, 2 * len(data) - draw(st.integers(0, 1)))
     if name == "RI":
         length, data = draw(st.integers(0, 300)), data[:0]
