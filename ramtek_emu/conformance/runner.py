@@ -34,6 +34,9 @@ def failure_here(claim: Claim) -> str:
                 action()
         else:
             display.send(words_of(write))
+        if "field" in claim.in_process:
+            # A field is made of the last one and of what changed.
+            display.field()
     failure = difference(claim, display.receive(display.processor.waiting))
     failure = failure or failure_of_the_display(claim, display) or failure_of_the_text(claim)
     if failure or any(write.startswith(JOYSTICK) for write in claim.writes):

@@ -216,10 +216,10 @@ class Twin:
         self.shapes = characters().tolist()
         self.replies: list[int] = []
         self.low = 0
-        whole = (0, 0, self.size[0] - 1, self.size[1] - 1)
+        self.whole = (0, 0, self.size[0] - 1, self.size[1] - 1)
         self.p: dict[str, tuple[int, ...]] = {name: (0,) * row.words for name, row in OPERANDS.items()}
         self.p |= {"mask": (0xFFFF,), "read_mask": (0xFFFF,), "texture": (0xFFFF, 0), "dimensions": (7, 9)}
-        self.p |= {"window": whole, "write_window": whole, "foreground": (self.every_plane,)}
+        self.p |= {"window": self.whole, "write_window": self.whole, "foreground": (self.every_plane,)}
 
     def send(self, instruction: Instruction) -> None:
         """Execute an instruction that draws or reads; SET and others only set their operands."""
@@ -232,12 +232,7 @@ class Twin:
         """Set operands. Windows and start points count from the base before the instruction."""
         base = self.base()
         for name, words in operands.items():
-            if name in ("index_1", "index_2", "origin", "write_offset", "write_window"):
-                self.p[name] = tuple(map(signed, words))
-            elif name == "conic" and len(words) == 12:
-                pairs = zip(words[::2], words[1::2], strict=True)
-                self.p[name] = tuple(signed(high) << 16 | low if high else signed(low) for high, low in pairs)
-            elif name == "conic":
+            if name in ("index_1", "index_2", "write_window", "conic"):
                 self.p[name] = tuple(map(signed, words))
             elif name not in ("window", "start"):
                 self.p[name] = words
@@ -295,13 +290,10 @@ class Twin:
 
     def get(self, place: Place) -> int:
         element, line = place
-        return self.words[line][element] if self.holds(place) else 0
-
-    def holds(self, place: Place) -> bool:
-        return 0 <= place[0] < self.size[0] and 0 <= place[1] < self.size[1]
+        return self.words[line][element] if inside(place, self.whole) else 0
 
     def put(self, place: Place, word: int | None) -> None:
-        if word is not None and self.holds(place) and inside(place, self.p["write_window"]):
+        if word is not None and inside(place, self.whole) and inside(place, self.p["write_window"]):
             mask = self.p["mask"][0] & self.every_plane
             self.words[place[1]][place[0]] = self.get(place) & ~mask | word & mask
 
@@ -410,7 +402,7 @@ class Twin:
         def is_open(place: Place) -> bool:
             word, until = self.get(place) & mask, foreground & self.every_plane & mask
             fits = word == seed if replaces else word != until
-            return fits and self.holds(place) and inside(place, self.p["write_window"])
+            return fits and inside(place, self.whole) and inside(place, self.p["write_window"])
 
         waiting = [first] if is_open(first) else []
         reached = set(waiting)
