@@ -198,10 +198,10 @@ def end_of_row(words: Words, place: int, legal: Booleans) -> int:
 
 def instruction_of(words: Words, extended: bool) -> Instruction:
     """The instruction whose words, all of them, these are."""
-    head = words[:MOST_HEAD].tolist()
-    layout = layouts_of_words(extended)[head[0]]
+    layout = layouts_of_words(extended)[words.item(0)]
     if layout is None:
         return Instruction(ILLEGAL, 0, {}, None, words)
+    head = words[:MOST_HEAD].tolist()
     format, low_byte = formats_of_opcodes(extended)[head[0] >> 8], head[0] & 0xFF
     operands: dict[str, tuple[int, ...]] = {}
     length: int | None = None

@@ -44,6 +44,8 @@ SIGNED: Final = frozenset(
 VERTICES: Final = frozenset(("WVL", "WVU", "WPT"))
 """Instructions whose data are points."""
 
+ILLEGAL_NOTE: Final = "begins no instruction"
+
 
 @dataclass(frozen=True, slots=True)
 class ListingItem:
@@ -109,28 +111,37 @@ def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> I
         data = odd_byte + piece
         odd_byte = data[len(data) & ~1 :]
         for words in decoder.split(np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)):
-            instruction = instruction_of(words, configuration.extended)
-            if instruction.format is ILLEGAL:
+            item = item_of(place, words, configuration.extended)
+            place += len(words)
+            if item.note == ILLEGAL_NOTE:
                 row += words.tobytes()
                 continue
             if row:
-                yield ListingItem(place, np.frombuffer(row, np.uint16), None, "begins no instruction")
-                place, row = place + len(row) // 2, bytearray()
-            if np.array_equal(words, encode(instruction)):
-                yield ListingItem(place, words, instruction)
-            else:
-                note = f"{instruction.format.name} with flag bits that no source names"
-                yield ListingItem(place, words, None, note)
-            place += len(words)
-    for rest, note in (
-        (row, "begins no instruction"),
-        (decoder.pending, "the stream ends within this instruction"),
-    ):
-        if rest:
-            yield ListingItem(place, np.frombuffer(rest, np.uint16), None, note)
-            place += len(rest) // 2
+                yield raw(item.place, row, ILLEGAL_NOTE)
+                row = bytearray()
+            yield item
+    if row:
+        yield raw(place, row, ILLEGAL_NOTE)
+    place += decoder.pending_words
+    if decoder.pending:
+        yield raw(place, decoder.pending, "the stream ends within this instruction")
     if odd_byte:
         yield ListingItem(place, NO_WORDS, None, "half a word at the end of the stream", odd_byte)
+
+
+def raw(end: int, data: bytearray, note: str) -> ListingItem:
+    """The item of words that end at a place of the stream and are no instruction, from their bytes."""
+    return ListingItem(end - len(data) // 2, np.frombuffer(data, np.uint16), None, note)
+
+
+def item_of(place: int, words: Words, extended: bool) -> ListingItem:
+    """The item of a whole instruction, or of a row of illegal words, at a place of the stream."""
+    instruction = instruction_of(words, extended)
+    if instruction.format is ILLEGAL:
+        return ListingItem(place, words, None, ILLEGAL_NOTE)
+    if np.array_equal(words, encode(instruction)):
+        return ListingItem(place, words, instruction)
+    return ListingItem(place, words, None, f"{instruction.format.name} with flag bits that no source names")
 
 
 def flag_names(low_byte: int) -> list[str]:
