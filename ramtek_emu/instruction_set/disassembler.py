@@ -7,7 +7,7 @@
 On the left are the index of the first word in the stream and the words; on the right is their meaning. The
 assembler reads only the right side, and returns exactly the words on the left, for any words. `raw` marks
 words that cannot be shown as an instruction: illegal words, an instruction that the end of the stream cuts
-off, or an instruction with flag bits that no source names. All data are listed; `0010*640` is 640 times 0010.
+off, or an instruction with flags that name nothing. All data are listed; `0010*640` is 640 times 0010.
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ import numpy as np
 from ramtek_emu.arrays import Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import Decoder, instruction_of
-from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction, encode, flag_words_of
+from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction, encode
 from ramtek_emu.instruction_set.table import (
-    ADDRESSING_NAMES,
-    FLAG_NAMES,
+    FLAG_OF_NAME,
     ILLEGAL,
     OPERANDS,
     Flags,
@@ -141,24 +140,24 @@ def item_of(place: int, words: Words, extended: bool) -> ListingItem:
         return ListingItem(place, words, None, ILLEGAL_NOTE)
     if np.array_equal(words, encode(instruction)):
         return ListingItem(place, words, instruction)
-    return ListingItem(place, words, None, f"{instruction.format.name} with flag bits that no source names")
+    return ListingItem(place, words, None, f"{instruction.format.name} with flags that name nothing")
 
 
 def flag_names(low_byte: int) -> list[str]:
     """The names of the flags; flags that follow from the operands and the data are left out."""
-    names = [name for flag, name in FLAG_NAMES.items() if low_byte & flag]
-    addressing = ADDRESSING_NAMES.get(low_byte & Flags.ADDRESSING)
-    return names if addressing is None else [*names, addressing]
+    addressing = low_byte & Flags.ADDRESSING
+    return [
+        name
+        for name, flag in FLAG_OF_NAME.items()
+        if (addressing == flag if flag & Flags.ADDRESSING else low_byte & flag)
+    ]
 
 
 def head_text(instruction: Instruction) -> str:
     """The text of an instruction without its data: name, flags, operands, length."""
     low_byte, parts = instruction.low_byte, [instruction.format.name]
     if instruction.format.is_normal:
-        first, second = flag_words_of(instruction.operands)
         parts += flag_names(low_byte)
-        parts += ["OF1"] * (low_byte & Flags.OPERANDS_1 != 0 and not first)
-        parts += ["OF2"] * (low_byte & Flags.OPERANDS_2 != 0 and not second)
     elif low_byte:
         parts.append(f"#{low_byte}")
     for name, words in instruction.operands.items():

@@ -17,7 +17,7 @@ Assumed: the bits of the second flag word that no source names carry no words.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Final
 
 
@@ -95,7 +95,7 @@ def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...
     )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class InstructionFormat:
     """A row of the instruction table."""
 
@@ -111,17 +111,22 @@ class InstructionFormat:
     unimplemented: bool = False
     """Whether the sources give only the name; then the instruction has no effect here."""
 
-    @property
+    @cached_property
     def is_normal(self) -> bool:
         """Whether the low byte holds flags."""
         return self.fixed is None
 
-    @property
+    @cached_property
     def replies(self) -> bool:
         """Whether the data go to the host; the instruction then has a length but no data."""
         return self.name in ("RAM", "RI")
 
-    @property
+    @cached_property
+    def sends_data(self) -> bool:
+        """Whether data follow a length."""
+        return not self.replies and "length" in (self.fixed or ("length",) * self.is_normal)
+
+    @cached_property
     def requests_operands(self) -> bool:
         """Whether the flag words name operands that the host asks for; then no operands follow."""
         return self.name == "READP"
@@ -260,10 +265,13 @@ Assumed: an instruction known by its name only has the normal format. The decode
 operands and data that its low byte announces, and so finds the next instruction. The operands are set, since
 they are sticky. The only other effect is the illegal-instruction status.
 """
-FLAG_NAMES: Final = {
-    Flags.REVERSE_PACKING: "RP",
-    Flags.SWAP: "BK",
-    Flags.ADDITIVE: "AD",
+FLAG_OF_NAME: Final = {
+    "RP": Flags.REVERSE_PACKING,
+    "BK": Flags.SWAP,
+    "AD": Flags.ADDITIVE,
+    "IX01": Flags.INDEX_1,
+    "IX10": Flags.INDEX_2,
+    "IX11": Flags.RELATIVE,
 }
-ADDRESSING_NAMES: Final = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
+"""The flags by their names in the sources, but those for operands and data."""
 FORMAT_OF_NAME: Final = {format.name: format for format in FORMATS}
