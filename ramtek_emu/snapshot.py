@@ -24,9 +24,7 @@ import os
 import struct
 import zlib
 from collections.abc import Callable, Mapping
-from dataclasses import fields
-from functools import reduce
-from operator import getitem
+from dataclasses import fields as fields_of
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
@@ -44,30 +42,24 @@ from ramtek_emu.writing import PNG, check_suffix, write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"
 """The text chunk `Software`; the number is the version of the format."""
-TEXTS: Final[dict[str, dict[str, tuple[str, ...]]]] = {
-    "lookup table": {
-        "address": ("lookup_table", "table_address"),
-        "entries": ("lookup_table", "entries"),
-    },
-    "parameters": {"now": ("parameters",), "saved": ("processor", "saved")},
-    "processor": {
-        "loaded_characters": ("processor", "loaded_characters"),
-        "illegal": ("processor", "illegal"),
-        "illegal_words": ("processor", "illegal_words"),
-        "named_only": ("processor", "without_effect"),
-        "nanoseconds": ("beam", "nanoseconds"),
-    },
-    "cursors": {
-        "all": ("cursors", "cursors"),
-        "track": ("cursors", "track"),
-        "enter_is_pressed": ("cursors", "enter_is_pressed"),
-        "driven": ("cursors", "tracking_devices"),
-    },
-    "glass": {"lines": ("scan_out", "lines_painted"), "pixels": ("scan_out", "monitor_image")},
+TEXTS: Final[dict[str, tuple[str, ...]]] = {
+    "lookup table": ("address", "entries"),
+    "parameters": ("now", "saved"),
+    "processor": ("loaded_characters", "illegal", "illegal_words", "named_only", "nanoseconds"),
+    "cursors": ("all", "track", "enter_is_pressed", "driven"),
+    "glass": ("lines", "pixels"),
 }
-"""The text chunks and their fields, each with its place in `Ramtek9300.state()`; "glass" only with a beam."""
-NO_TIME: Final = {"beam": {"nanoseconds": 0}}
-"""The beam in the snapshot of a display without one."""
+"""The text chunks and their fields; "glass" only with a beam."""
+NAMES: Final = {
+    "address": "table_address",
+    "now": "parameters",
+    "named_only": "without_effect",
+    "all": "cursors",
+    "driven": "tracking_devices",
+    "lines": "lines_painted",
+    "pixels": "monitor_image",
+}
+"""The names in `Ramtek9300.state()` of the fields that have another name there."""
 
 
 def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = False) -> None:
@@ -105,15 +97,22 @@ def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
 
 def snapshot_bytes(display: Ramtek9300) -> bytes:
     """The display as the bytes of a PNG file."""
-    state, configuration = NO_TIME | display.state(), display.configuration
+    values, configuration = _values(display), display.configuration
     timing = configuration.timing and vars(configuration.timing)
     kinds = {"entry_format": configuration.entry_format.name, "timing": timing}
     plain: dict[str, Any] = {"configuration": vars(configuration) | kinds}
-    for keyword, places in TEXTS.items():
+    for keyword, names in TEXTS.items():
         if keyword != "glass" or timing:
-            plain[keyword] = {name: to_plain(reduce(getitem, path, state)) for name, path in places.items()}
-    texts = {keyword: json.dumps(values, separators=(",", ":")) for keyword, values in plain.items()}
+            plain[keyword] = {name: to_plain(values[NAMES.get(name, name)]) for name in names}
+    texts = {keyword: json.dumps(text, separators=(",", ":")) for keyword, text in plain.items()}
     return picture_bytes(display.words, {"Software": SOFTWARE} | texts)
+
+
+def _values(display: Ramtek9300) -> dict[str, Any]:
+    """The state of a display by the names of its values, the parameters as one; without a beam, time is 0."""
+    parts = display.state()
+    values: dict[str, Any] = {"nanoseconds": 0, "parameters": parts.pop("parameters")}
+    return values | {name: value for part in parts.values() for name, value in part.items()}
 
 
 def display_of(data: bytes) -> Ramtek9300:
@@ -129,15 +128,16 @@ def display_of(data: bytes) -> Ramtek9300:
         )
     whole_number(int(words.max()), (0, configuration.largest_word), "a word")
     display = Ramtek9300(configuration)
-    state: dict[str, Any] = NO_TIME | display.state() | {"frame_buffer": {"words": words}}
-    state["processor"]["saved"] = [state["parameters"]]
-    for keyword, places in TEXTS.items():
+    values = _values(display)
+    values |= {"words": words, "saved": [values["parameters"]]}
+    for keyword, fields in TEXTS.items():
         if keyword != "glass" or configuration.timing is not None:
-            values = _object(texts, keyword, *places)
-            for name, (*path, last) in places.items():
-                part = reduce(getitem, path, state)
-                part[last] = from_plain(part[last], values[name], ".".join([*path, last]))
-    display.restore(state)
+            given = _object(texts, keyword, *fields)
+            for field in fields:
+                name = NAMES.get(field, field)
+                values[name] = from_plain(values[name], given[field], name)
+    state = {part: {name: values.get(name) for name in names} for part, names in display.state().items()}
+    display.restore(state | {"parameters": values["parameters"]})
     return display
 
 
@@ -151,7 +151,7 @@ def configuration_of(plain: dict[str, Any]) -> Configuration:
         kinds = {"entry_format": entry_format, "timing": timing and Timing(**timing)}
         return Configuration(**plain | kinds)
     except (KeyError, TypeError):
-        names = ", ".join(field.name for field in fields(Configuration))
+        names = ", ".join(field.name for field in fields_of(Configuration))
         raise value_refusal("the configuration", f"an object of {names}", plain) from None
     except ConfigurationError as cause:
         raise SnapshotError(
