@@ -12,6 +12,7 @@ are dropped.
 
 from __future__ import annotations
 
+import itertools
 import queue
 import threading
 import time
@@ -24,7 +25,7 @@ from ramtek_emu.arrays import Colors
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.host.server import READ_BYTES, HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
-from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 
 Read = Callable[[int], bytes]
 Write = Callable[[bytes], object]
@@ -131,13 +132,11 @@ class PolledPipe:
 class CutReader:
     """Reads a stream as the given `read` does, and cuts it after the instructions that `is_cut` chooses.
 
-    `is_cut` is called for each instruction in order; an illegal word is an instruction with the format
-    ILLEGAL, as in a listing.
+    `is_cut` is called with the opcode of each instruction, in order. A row of illegal words is an
+    instruction, as in a listing; it ends where the pieces of the stream cut it.
     """
 
-    def __init__(
-        self, read: Read, configuration: Configuration, is_cut: Callable[[Instruction], bool]
-    ) -> None:
+    def __init__(self, read: Read, configuration: Configuration, is_cut: Callable[[int], bool]) -> None:
         self.ends_in_cut = False
         """Whether the last piece ends with a chosen instruction."""
         self._read = read
@@ -167,10 +166,9 @@ class CutReader:
         odd = len(self._odd_byte)
         whole = self._odd_byte + data
         self._odd_byte = whole[len(whole) & ~1 :]
-        words = np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16, copy=False)
         begun = 0
-        for instruction in self._decoder.feed(words):
-            if self._is_cut(instruction):
+        for words in self._decoder.split(np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16)):
+            if not self._decoder.is_within_row and self._is_cut(int(words[0]) >> 8):
                 end = 2 * self._decoder.used - odd
                 yield data[begun:end], True
                 begun = end
@@ -178,21 +176,15 @@ class CutReader:
             yield data[begun:], False
 
 
-def is_load(instruction: Instruction) -> bool:
+def is_load(opcode: int) -> bool:
     """Whether an instruction loads the lookup table."""
-    return instruction.format.name == "LAM"
+    return opcode == FORMAT_OF_NAME["LAM"].opcode
 
 
-def every(count: int) -> Callable[[Instruction], bool]:
+def every(count: int) -> Callable[[int], bool]:
     """A function that returns True at every `count`-th call."""
-    number = 0
-
-    def is_cut(_: Instruction) -> bool:
-        nonlocal number
-        number = (number + 1) % count
-        return number == 0
-
-    return is_cut
+    numbers = itertools.count(1)
+    return lambda _: next(numbers) % count == 0
 
 
 class PacedReader:

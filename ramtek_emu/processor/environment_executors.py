@@ -17,9 +17,9 @@ MOST_SAVED: Final = 16
 
 
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: PRG (the status bit). Assumed: only the illegal word is skipped."""
+    """Hardware: PRG (the status bit). Assumed: only the illegal words are skipped."""
     processor.flag_illegal()
-    processor.illegal_words += max(1, len(instruction.data))
+    processor.illegal_words += len(instruction.data)
 
 
 def consume(processor: Processor, instruction: Instruction) -> None:
@@ -68,7 +68,8 @@ def restore_environment(processor: Processor, instruction: Instruction) -> None:
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
     """Reply the operands that the flag words name, in the order of the operand table.
 
-    Assumed: all of this. Without flag words every operand is replied.
+    Assumed: all of this. Without flag words every operand is replied. CONE is its six words: the lower halves
+    of coefficients that WC has sent as pairs.
     """
     names = instruction.operands or OPERANDS
     words = [word for name in names for word in processor.parameters.operand(name)]
