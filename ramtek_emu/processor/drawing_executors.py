@@ -92,7 +92,7 @@ def write_circles(processor: Processor, instruction: Instruction) -> Pauses | No
     return follow(parameters, centers, slices)
 
 
-def write_conic(processor: Processor, instruction: Instruction) -> None:
+def write_conic(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: LIN (from the operating point to the data point, or for a number of pixels).
 
     Assumed: the operating point moves to the last pixel; of several data points the first is used; without a
@@ -101,7 +101,7 @@ def write_conic(processor: Processor, instruction: Instruction) -> None:
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
     stop = Point(*points[0].tolist()) if len(points) else None
-    elements, lines = curves.conic_pixels(parameters.conic, parameters.start, stop)
+    elements, lines = yield from curves.conic_pixels(parameters.conic, parameters.start, stop)
     word, _ = processor.colors(instruction)
     processor.frame_buffer.write_points(elements, lines, word, parameters.enable)
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
@@ -147,7 +147,7 @@ def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
             yield
 
 
-def write_text(processor: Processor, instruction: Instruction) -> None:
+def write_text(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
     parameters = processor.parameters
     foreground, background = processor.colors(instruction)
@@ -160,7 +160,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
         transparent=bool(instruction.low_byte & Flags.ADDITIVE),
     )
     is_standard = parameters.font == STANDARD_FONT
-    next_cell = text.write_text(
+    next_cell = yield from text.write_text(
         processor.frame_buffer,
         characters() if is_standard else processor.loaded_characters,
         instruction.data_bytes(),
