@@ -128,7 +128,7 @@ def test_a_listing_does_not_depend_on_how_the_stream_was_cut(stream: list[int], 
     whole = np.array(stream, "<u2").tobytes()
     pieces = [part.astype("<u2").tobytes() for part in cuts(stream, places)]
     pieces = [half for piece in pieces for half in (piece[:1], piece[1:])]
-    assert [line for item in items(pieces) for line in item.lines()] == listing(whole)
+    assert [line for item in items(pieces, FAMILY) for line in item.lines()] == listing(whole)
 
 
 @pytest.mark.parametrize("number", range(len(RECORDED)))
