@@ -104,7 +104,8 @@ class Ramtek9300:
 
         A long instruction is executed in slices of a few milliseconds, with pauses between them. Such a pause
         yields the same number as the pause before the instruction. A reset during it abandons the rest of the
-        instruction. With a beam there are no such pauses.
+        instruction. With a beam, the instruction takes its time at the end: lines that the beam has passed
+        show the state before the instruction, all others the state after it.
         """
         stream = checked_stream(words)
         self.words_received += len(stream)
@@ -117,23 +118,22 @@ class Ramtek9300:
             used = self.decoder.used
             if self.beam is None:
                 pauses = execute_in_slices(self.processor, instruction)
-                if pauses is not None:
-                    resets = self.resets
-                    for _ in pauses:
-                        yield executed
-                        if self.resets != resets:
-                            break
             else:
-                self._execute_in_time(instruction, self.beam)
+                pauses = self._execute_in_time(instruction, self.beam)
+            if pauses is not None:
+                resets = self.resets
+                for _ in pauses:
+                    yield executed
+                    if self.resets != resets:
+                        break
             executed = used
             yield used
 
-    def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
-        # Lines that the beam has passed show the state before the instruction, all others the state after it.
-        self.scan_out.follow_beam()
+    def _execute_in_time(self, instruction: Instruction, beam: Beam) -> Pauses:
+        yield from self.scan_out.follow_beam()
         written = self.frame_buffer.written
-        execute(self.processor, instruction)
-        self.scan_out.follow_beam()
+        yield from execute_in_slices(self.processor, instruction) or ()
+        yield from self.scan_out.follow_beam()
         if instruction.format is ILLEGAL:
             # Assumed: the words of a row are read one by one; so its time does not depend on cuts.
             beam.charge(len(instruction.data), 0, len(instruction.data))

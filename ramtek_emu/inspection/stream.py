@@ -5,7 +5,6 @@ Instruction 1 is the first; 0 stands for power-on. A row of illegal words is one
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -13,7 +12,7 @@ import numpy as np
 from ramtek_emu.arrays import AnyArray, Bytes, Indices, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import lengths, words_that_begin
-from ramtek_emu.instruction_set.disassembler import ListingItem, items
+from ramtek_emu.instruction_set.disassembler import ListingItem, item_of
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 
 Array = TypeVar("Array", bound=AnyArray)
@@ -82,8 +81,7 @@ class Stream:
     def item(self, number: int) -> ListingItem:
         """An instruction as `ramtek list` shows it."""
         words = self.words_between(number - 1, number)
-        (item,) = items([words.astype("<u2", copy=False).tobytes()], self.configuration)
-        return replace(item, place=self.place(number))
+        return item_of(self.place(number), words, self.configuration.extended)
 
 
 def _with_room(items: Array, used: int, more: int) -> Array:

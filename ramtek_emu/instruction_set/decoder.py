@@ -18,7 +18,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -39,25 +39,9 @@ from ramtek_emu.instruction_set.table import (
 
 MOST_HEAD: Final = 64
 """An upper bound on the words of an instruction before its data."""
-MOST_WORDS: Final = MOST_HEAD + 0x8000
-"""An upper bound on the words of an instruction, but a row of illegal words."""
 FEW: Final = 24
 """So many illegal words are looked at one by one, and further words at once."""
 CONIC: Final = OPERAND_BITS["conic"]
-
-
-class Continuation(NamedTuple):
-    """How an instruction with a certain first word continues."""
-
-    head: int
-    """The number of words before the operands that flag words name."""
-    first: int
-    """The index of the first operand flag word; 0 if there is none, or if no operands follow."""
-    second: int
-    has_length: bool
-    has_data: bool
-    may_be_short: bool
-    """Whether conic coefficients are twelve words, or six where twelve make no sense."""
 
 
 class Decoder:
@@ -108,9 +92,9 @@ class Decoder:
             self.clear()
         begin = 0
         ends, missing = lengths(words, self._extended)
-        layouts, numbers = layouts_of_words(self._extended), words.data
+        formats = formats_of_words(self._extended)
         for end in ends:
-            is_illegal = layouts[numbers[begin]] is None
+            is_illegal = formats[words.item(begin)] is ILLEGAL
             self.is_within_row = is_illegal and self._last_is_illegal and begin == 0
             self._last_is_illegal = is_illegal
             self.used = end - before
@@ -127,66 +111,67 @@ def lengths(words: Words, extended: bool) -> tuple[array[int], int]:
     0 means that there is no rest. A row of illegal words is one instruction; it is whole wherever it ends.
     `extended` means the instructions of the 9400 and the 9460.
     """
-    layouts, numbers, count = layouts_of_words(extended), words.data, len(words)
+    formats, numbers, count = formats_of_words(extended), words.data, len(words)
     ends = array("q")
     place = 0
     while place < count:
-        layout = layouts[numbers[place]]
-        if layout is None:
-            end = end_of_row(words, place, words_that_begin(extended))
+        word = numbers[place]
+        format = formats[word]
+        sends_data = format.sends_data
+        if format is ILLEGAL:
+            end = end_of_row(words, place, extended)
+        elif format.fixed is not None:
+            end = place + 1 + len(format.fixed)
         else:
-            head, first, second, has_length, has_data, may_be_short = layout
-            end = place + head
-            if first or second:
+            end = operands = place + FIRST_OPERAND[word & 6]
+            if word & 6 and not format.requests_operands:
                 if end > count:
                     return ends, end - count
-                if first:
-                    end += SIZES_1[numbers[place + first]]
-                if second:
-                    end += SIZES_2[numbers[place + second] & 0x3F]
-                if may_be_short:
-                    missing = missing_coefficients(numbers, place, end, layout)
+                if word & Flags.OPERANDS_1:
+                    end += SIZES_1[numbers[place + 1]]
+                if word & Flags.OPERANDS_2:
+                    end += SIZES_2[numbers[operands - 1] & 0x3F]
+                if format.name == "WC":
+                    missing = missing_coefficients(numbers, place, operands, end)
                     if missing is None:
                         return ends, end + 1 - count
                     end += missing
-            if has_length:
-                end += 1
-                if has_data:
-                    if end > count:
-                        return ends, end - count
-                    end += numbers[end - 1] + 1 >> 1
-            if end > count:
-                return ends, end - count
+            end += word & Flags.DATA
+            sends_data = sends_data and bool(word & Flags.DATA)
+        if sends_data and end <= count:
+            end += numbers[end - 1] + 1 >> 1
+        if end > count:
+            return ends, end - count
         ends.append(end)
         place = end
     return ends, 0
 
 
-def missing_coefficients(numbers: memoryview[int], place: int, end: int, layout: Continuation) -> int | None:
+def missing_coefficients(numbers: memoryview[int], place: int, operands: int, end: int) -> int | None:
     """The words of a WC's coefficients beyond six: 6, or 0 if it has six; None if that is not known yet.
 
-    The WC begins at `place`, and `end` is the end of its operands if it has six.
+    The WC begins at `place`, and its operands would begin and end there if it had six.
     """
-    flag_word = numbers[place + layout.first] if layout.first else 0
+    flag_word = numbers[place + 1] if numbers[place] & Flags.OPERANDS_1 else 0
     if not flag_word & CONIC:
         return 0
     # With twelve coefficients, every second word is the upper half of one.
-    after_conic = end - place - layout.head - SIZES_1[flag_word & 2 * CONIC - 1]
-    if not layout.has_length or after_conic not in (0, 2, 4):
+    after_conic = end - operands - SIZES_1[flag_word & 2 * CONIC - 1]
+    if not numbers[place] & Flags.DATA or after_conic not in (0, 2, 4):
         return 6
     if end >= len(numbers):
         return None
     return 0 if numbers[end] == 4 else 6
 
 
-def end_of_row(words: Words, place: int, legal: Booleans) -> int:
+def end_of_row(words: Words, place: int, extended: bool) -> int:
     """The end of the row of illegal words that begins at `place`."""
-    end, numbers = place + 1, words.data
-    while end < len(words) and end - place < FEW:
-        if legal.item(numbers[end]):
-            return end
-        end += 1
+    legal = words_that_begin(extended)
     step = FEW
+    for end in range(place + 1, min(place + step, len(words))):
+        if legal[words.item(end)]:
+            return end
+    end = min(place + step, len(words))
     while end < len(words):
         found = legal[words[end : end + step]]
         if found.any():
@@ -198,80 +183,54 @@ def end_of_row(words: Words, place: int, legal: Booleans) -> int:
 
 def instruction_of(words: Words, extended: bool) -> Instruction:
     """The instruction whose words, all of them, these are."""
-    head = words[:MOST_HEAD].tolist()
-    layout = layouts_of_words(extended)[head[0]]
-    if layout is None:
+    format = formats_of_words(extended)[words.item(0)]
+    if format is ILLEGAL:
         return Instruction(ILLEGAL, 0, {}, None, words)
-    format, low_byte = formats_of_opcodes(extended)[head[0] >> 8], head[0] & 0xFF
+    head = words[:MOST_HEAD].tolist()
+    low_byte, length = head[0] & 0xFF, None
     operands: dict[str, tuple[int, ...]] = {}
-    length: int | None = None
-    place = layout.head
     if format.fixed is not None:
-        operands = {name: (word,) for name, word in zip(format.fixed, head[1:place], strict=False)}
-    elif place > 1:
+        place = 1 + len(format.fixed)
+        operands = {name: (word,) for name, word in zip(format.fixed, head[1:place], strict=True)}
+        if "length" in operands:
+            (length,) = operands.pop("length")
+    else:
+        place = FIRST_OPERAND[low_byte & 6]
         first = head[1] if low_byte & Flags.OPERANDS_1 else 0
         second = head[place - 1] if low_byte & Flags.OPERANDS_2 else 0
-        missing = 0
-        if layout.may_be_short:
-            end = place + SIZES_1[first] + SIZES_2[second & 0x3F]
-            missing = missing_coefficients(words.data, 0, end, layout) or 0
-        for operand in operands_named(first, second):
-            size = 0 if format.requests_operands else operand.words
-            if operand.name == "conic":
-                size += missing
-            operands[operand.name] = tuple(head[place : place + size])
-            place += size
-    if layout.has_length:
-        length = head[place]
-        place += 1
+        if format.requests_operands:
+            operands = {operand.name: () for operand in operands_named(first, second)}
+        elif place > 1:
+            for operand in operands_named(first, second):
+                size = operand.words
+                if operand.name == "conic" and format.name == "WC":
+                    end = FIRST_OPERAND[low_byte & 6] + SIZES_1[first] + SIZES_2[second & 0x3F]
+                    size += missing_coefficients(words.data, 0, FIRST_OPERAND[low_byte & 6], end) or 0
+                operands[operand.name] = tuple(head[place : place + size])
+                place += size
+        if low_byte & Flags.DATA:
+            length = head[place]
+            place += 1
     return Instruction(format, low_byte, operands, length, words[place:] if place < len(words) else NO_WORDS)
 
 
 @lru_cache
-def formats_of_opcodes(extended: bool) -> tuple[InstructionFormat, ...]:
-    """The formats of the 256 opcodes; without `extended`, opcodes of the 9400 and 9460 are ILLEGAL."""
+def formats_of_words(extended: bool) -> tuple[InstructionFormat, ...]:
+    """The format of the instruction that each of the 65,536 words begins, or ILLEGAL."""
     formats = {format.opcode: format for format in FORMATS if extended or not format.extended}
-    return tuple(formats.get(opcode, ILLEGAL) for opcode in range(256))
-
-
-@lru_cache
-def layouts_of_words(extended: bool) -> tuple[Continuation | None, ...]:
-    """How an instruction continues after each of the 65,536 words; None for illegal words."""
-    return tuple(
-        layout
-        for format in formats_of_opcodes(extended)
-        for layout in (
-            [layout_of(format, low_byte, extended) for low_byte in range(8)] * 32
-            if format.is_normal
-            else [layout_of(format, 0, extended)] * 256
-        )
-    )
-
-
-def layout_of(format: InstructionFormat, low_byte: int, extended: bool) -> Continuation | None:
-    """How an instruction of a format continues, by its low byte."""
-    if format is ILLEGAL or (format.is_normal and low_byte & Flags.OPERANDS_2 and not extended):
-        return None
-    if format.fixed is not None:
-        has_length = "length" in format.fixed
-        head = 1 + len(format.fixed) - has_length
-        return Continuation(head, 0, 0, has_length, has_length and not format.replies, False)
-    first, second = bool(low_byte & Flags.OPERANDS_1), bool(low_byte & Flags.OPERANDS_2)
-    has_length, follow = bool(low_byte & Flags.DATA), not format.requests_operands
-    return Continuation(
-        head=1 + first + second,
-        first=int(first and follow),
-        second=(first + second) * (second and follow),
-        has_length=has_length,
-        has_data=has_length and not format.replies,
-        may_be_short=format.name == "WC" and first,
-    )
+    rows = [formats.get(word >> 8, ILLEGAL) for word in range(0x10000)]
+    if not extended:
+        rows = [
+            ILLEGAL if format.is_normal and word & Flags.OPERANDS_2 else format
+            for word, format in enumerate(rows)
+        ]
+    return tuple(rows)
 
 
 @lru_cache
 def words_that_begin(extended: bool) -> Booleans:
     """Whether each of the 65,536 words begins an instruction."""
-    return np.array([layout is not None for layout in layouts_of_words(extended)])
+    return np.array([format is not ILLEGAL for format in formats_of_words(extended)])
 
 
 def sizes_of(operands: tuple[Operand, ...]) -> list[int]:
@@ -284,3 +243,5 @@ def sizes_of(operands: tuple[Operand, ...]) -> list[int]:
 
 SIZES_1: Final = sizes_of(OPERANDS_1)
 SIZES_2: Final = sizes_of(OPERANDS_2)
+FIRST_OPERAND: Final = (1, 1, 2, 2, 2, 2, 3)
+"""The index of the first operand by the two flags for flag words, which precede it."""

@@ -7,7 +7,7 @@
 On the left are the index of the first word in the stream and the words; on the right is their meaning. The
 assembler reads only the right side, and returns exactly the words on the left, for any words. `raw` marks
 words that cannot be shown as an instruction: illegal words, an instruction that the end of the stream cuts
-off, or an instruction with flag bits that no source names. All data are listed; `0010*640` is 640 times 0010.
+off, or an instruction with flags that name nothing. All data are listed; `0010*640` is 640 times 0010.
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ import numpy as np
 from ramtek_emu.arrays import Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import Decoder, instruction_of
-from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction, encode, flag_words_of
+from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction, encode
 from ramtek_emu.instruction_set.table import (
-    ADDRESSING_NAMES,
-    FLAG_NAMES,
+    FLAG_OF_NAME,
     ILLEGAL,
     OPERANDS,
     Flags,
@@ -43,6 +42,8 @@ SIGNED: Final = frozenset(
 )
 VERTICES: Final = frozenset(("WVL", "WVU", "WPT"))
 """Instructions whose data are points."""
+
+ILLEGAL_NOTE: Final = "begins no instruction"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,45 +110,54 @@ def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> I
         data = odd_byte + piece
         odd_byte = data[len(data) & ~1 :]
         for words in decoder.split(np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)):
-            instruction = instruction_of(words, configuration.extended)
-            if instruction.format is ILLEGAL:
+            item = item_of(place, words, configuration.extended)
+            place += len(words)
+            if item.note == ILLEGAL_NOTE:
                 row += words.tobytes()
                 continue
             if row:
-                yield ListingItem(place, np.frombuffer(row, np.uint16), None, "begins no instruction")
-                place, row = place + len(row) // 2, bytearray()
-            if np.array_equal(words, encode(instruction)):
-                yield ListingItem(place, words, instruction)
-            else:
-                note = f"{instruction.format.name} with flag bits that no source names"
-                yield ListingItem(place, words, None, note)
-            place += len(words)
-    for rest, note in (
-        (row, "begins no instruction"),
-        (decoder.pending, "the stream ends within this instruction"),
-    ):
-        if rest:
-            yield ListingItem(place, np.frombuffer(rest, np.uint16), None, note)
-            place += len(rest) // 2
+                yield raw(item.place, row, ILLEGAL_NOTE)
+                row = bytearray()
+            yield item
+    if row:
+        yield raw(place, row, ILLEGAL_NOTE)
+    place += decoder.pending_words
+    if decoder.pending:
+        yield raw(place, decoder.pending, "the stream ends within this instruction")
     if odd_byte:
         yield ListingItem(place, NO_WORDS, None, "half a word at the end of the stream", odd_byte)
 
 
+def raw(end: int, data: bytearray, note: str) -> ListingItem:
+    """The item of words that end at a place of the stream and are no instruction, from their bytes."""
+    return ListingItem(end - len(data) // 2, np.frombuffer(data, np.uint16), None, note)
+
+
+def item_of(place: int, words: Words, extended: bool) -> ListingItem:
+    """The item of a whole instruction, or of a row of illegal words, at a place of the stream."""
+    instruction = instruction_of(words, extended)
+    if instruction.format is ILLEGAL:
+        return ListingItem(place, words, None, ILLEGAL_NOTE)
+    if np.array_equal(words, encode(instruction)):
+        return ListingItem(place, words, instruction)
+    return ListingItem(place, words, None, f"{instruction.format.name} with flags that name nothing")
+
+
 def flag_names(low_byte: int) -> list[str]:
     """The names of the flags; flags that follow from the operands and the data are left out."""
-    names = [name for flag, name in FLAG_NAMES.items() if low_byte & flag]
-    addressing = ADDRESSING_NAMES.get(low_byte & Flags.ADDRESSING)
-    return names if addressing is None else [*names, addressing]
+    addressing = low_byte & Flags.ADDRESSING
+    return [
+        name
+        for name, flag in FLAG_OF_NAME.items()
+        if (addressing == flag if flag & Flags.ADDRESSING else low_byte & flag)
+    ]
 
 
 def head_text(instruction: Instruction) -> str:
     """The text of an instruction without its data: name, flags, operands, length."""
     low_byte, parts = instruction.low_byte, [instruction.format.name]
     if instruction.format.is_normal:
-        first, second = flag_words_of(instruction.operands)
         parts += flag_names(low_byte)
-        parts += ["OF1"] * (low_byte & Flags.OPERANDS_1 != 0 and not first)
-        parts += ["OF2"] * (low_byte & Flags.OPERANDS_2 != 0 and not second)
     elif low_byte:
         parts.append(f"#{low_byte}")
     for name, words in instruction.operands.items():

@@ -58,11 +58,7 @@ def encode(instruction: Instruction) -> Words:
     head = [format.opcode << 8 | instruction.low_byte]
     if format.is_normal:
         first, second = flag_words_of(instruction.operands)
-        # If a flag is set, its flag word is sent, even if that word names no operand.
-        if instruction.low_byte & Flags.OPERANDS_1:
-            head.append(first)
-        if instruction.low_byte & Flags.OPERANDS_2:
-            head.append(second)
+        head += [word for word in (first, second) if word]
         for operand in operands_named(first, second):
             head.extend(instruction.operands[operand.name])
         if instruction.length is not None:

@@ -17,7 +17,7 @@ Assumed: the bits of the second flag word that no source names carry no words.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Final
 
 
@@ -95,7 +95,7 @@ def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...
     )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class InstructionFormat:
     """A row of the instruction table."""
 
@@ -111,17 +111,22 @@ class InstructionFormat:
     unimplemented: bool = False
     """Whether the sources give only the name; then the instruction has no effect here."""
 
-    @property
+    @cached_property
     def is_normal(self) -> bool:
         """Whether the low byte holds flags."""
         return self.fixed is None
 
-    @property
+    @cached_property
     def replies(self) -> bool:
         """Whether the data go to the host; the instruction then has a length but no data."""
         return self.name in ("RAM", "RI")
 
-    @property
+    @cached_property
+    def sends_data(self) -> bool:
+        """Whether data follow a length."""
+        return not self.replies and "length" in (self.fixed or ("length",) * self.is_normal)
+
+    @cached_property
     def requests_operands(self) -> bool:
         """Whether the flag words name operands that the host asks for; then no operands follow."""
         return self.name == "READP"
@@ -162,6 +167,7 @@ SUBSTANTIATED: Final = rows_of("""
 0D WR | write a raster of one bit a pixel | LIN wr.c, PRG rast.c
 0E WVL | write linked vectors | LIN wv.c, LIN wvs.c, PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c
 0F WC | write a conic | LIN wc.c, LIN libdoc
+10 WPB | write a plot | LIN libdoc, LIN fplot.c, opcode from NCAR ramtek.h
 13+ PUSHE none | save the environment | NCAR ramtek.h, format assumed
 14+ POPE none | restore the environment | NCAR ramtek.h, format assumed
 15 LPF rows_0_1 rows_2_3 rows_4_5 rows_6_7 rows_8_9 rows_10_11 | load a character | LIN lcs.c
@@ -201,7 +207,7 @@ sources give numbers and names. Their executors say more.
 """
 
 NAMES: Final = """
-01+ LOAD load a hard register; 02+ READ read a soft register; 10 WPB write a plot box;
+01+ LOAD load a hard register; 02+ READ read a soft register;
 11 SCRX scroll along the lines; 12 SCRY scroll across the lines; 18+ WKB write to the keyboard;
 19+ RKB read the keyboard; 1A+ SPS sense the status of peripherals; 1B+ LDL load a display list;
 1C+ RDL read a display list; 1D+ CCM call control memory; 1E+ XIM execute instruction memory;
@@ -259,10 +265,13 @@ Assumed: an instruction known by its name only has the normal format. The decode
 operands and data that its low byte announces, and so finds the next instruction. The operands are set, since
 they are sticky. The only other effect is the illegal-instruction status.
 """
-FLAG_NAMES: Final = {
-    Flags.REVERSE_PACKING: "RP",
-    Flags.SWAP: "BK",
-    Flags.ADDITIVE: "AD",
+FLAG_OF_NAME: Final = {
+    "RP": Flags.REVERSE_PACKING,
+    "BK": Flags.SWAP,
+    "AD": Flags.ADDITIVE,
+    "IX01": Flags.INDEX_1,
+    "IX10": Flags.INDEX_2,
+    "IX11": Flags.RELATIVE,
 }
-ADDRESSING_NAMES: Final = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
+"""The flags by their names in the sources, but those for operands and data."""
 FORMAT_OF_NAME: Final = {format.name: format for format in FORMATS}

@@ -1,4 +1,4 @@
-"""Executors of the instructions that draw: vectors, points, conics, circles and text.
+"""Executors of the instructions that draw: vectors, points, conics, circles, plots and text.
 
 Assumed: with the additive flag, the pixels between the dots of characters, rasters and textures stay
 unchanged, as its name suggests; without it the background word is written there.
@@ -16,8 +16,8 @@ from ramtek_emu.drawing import curves, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register
-from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register, signed
+from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
@@ -92,7 +92,7 @@ def write_circles(processor: Processor, instruction: Instruction) -> Pauses | No
     return follow(parameters, centers, slices)
 
 
-def write_conic(processor: Processor, instruction: Instruction) -> None:
+def write_conic(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: LIN (from the operating point to the data point, or for a number of pixels).
 
     Assumed: the operating point moves to the last pixel; of several data points the first is used; without a
@@ -101,13 +101,53 @@ def write_conic(processor: Processor, instruction: Instruction) -> None:
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
     stop = Point(*points[0].tolist()) if len(points) else None
-    elements, lines = curves.conic_pixels(parameters.conic, parameters.start, stop)
+    elements, lines = yield from curves.conic_pixels(parameters.conic, parameters.start, stop)
     word, _ = processor.colors(instruction)
     processor.frame_buffer.write_points(elements, lines, word, parameters.enable)
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
-def write_text(processor: Processor, instruction: Instruction) -> None:
+MARKS_AT_ONCE: Final = 256
+PIXELS_AT_ONCE: Final = 1 << 20
+"""Limits: the marks, and the pixels of marks, between two pauses; some 2 ms each."""
+
+
+def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
+    """Draw a mark for each value of the data, from the base line to the value, along the scan.
+
+    Hardware: LIN libdoc (the starting point, and along the scan the size of a mark, DIM, and the step from
+    mark to mark, SPACE; the base line; a word for each value); LIN fplot.c (values are places on the screen,
+    lines in scan order 0; DIM and SPACE of 1 plot each element, from one edge of the plot to the other).
+    Assumed: the opcode; a mark is a bar that includes the base line and the value; a value is a signed
+    coordinate, in scan orders 4 to 7 an element, and with relative or indexed addressing is counted from that
+    point; the base line is a coordinate of the memory. The second words of DIM and SPACE, and the place of
+    the start across the scan, have no effect. The size of a mark is at least 1, and marks step as the scan
+    runs. As lines, marks are clipped at the write window alone. The operating point moves along the scan to
+    the place of the next mark.
+    """
+    parameters = processor.parameters
+    order, (size, step) = parameters.order, (parameters.dimensions[0], signed(parameters.spacing[0]))
+    base = signed(parameters.base_line)
+    word, _ = processor.colors(instruction)
+    origin = parameters.base(instruction.low_byte)
+    values = processor.points(instruction, 1)[:, 0] + (origin.element if order.vertical else origin.line)
+    pixels = 0
+    for number, value in enumerate(values.tolist(), 1):
+        first = parameters.start
+        last = order.stepped(first, max(1, size) - 1, 0)
+        (left, right), (top, bottom) = map(sorted, zip(first, last, strict=True))
+        low, high = sorted((base, value))
+        box = Window(low, top, high, bottom) if order.vertical else Window(left, low, right, high)
+        before = processor.frame_buffer.written
+        processor.frame_buffer.fill(box, word, parameters.enable)
+        pixels += processor.frame_buffer.written - before
+        parameters.start = register(order.stepped(first, step, 0))
+        if number % MARKS_AT_ONCE == 0 or pixels >= PIXELS_AT_ONCE:
+            pixels = 0
+            yield
+
+
+def write_text(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
     parameters = processor.parameters
     foreground, background = processor.colors(instruction)
@@ -120,7 +160,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
         transparent=bool(instruction.low_byte & Flags.ADDITIVE),
     )
     is_standard = parameters.font == STANDARD_FONT
-    next_cell = text.write_text(
+    next_cell = yield from text.write_text(
         processor.frame_buffer,
         characters() if is_standard else processor.loaded_characters,
         instruction.data_bytes(),
@@ -166,6 +206,7 @@ EXECUTORS: Final[Executors] = {
     "WPT": write_points,
     "CIRC": write_circles,
     "WC": write_conic,
+    "WPB": write_plot,
     "WT": write_text,
     "LPF": load_character,
     "LPFRP": load_reversed_character,

@@ -13,7 +13,7 @@ says how the 9300 mixed cursors into the video.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
@@ -56,6 +56,10 @@ class Stamp(NamedTuple):
     """The cursors that are drawn."""
     rest: tuple[object, ...]
     """All else that a field depends on."""
+
+
+PAINTED_AT_ONCE: Final = 1 << 20
+"""The pixels that are painted at once behind a beam. Limit: a bound on the time between two pauses, 5 ms."""
 
 
 class ScanOut:
@@ -168,24 +172,30 @@ class ScanOut:
         self.scan_out_into(pixels)
         return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
 
-    def follow_beam(self) -> None:
-        """Paint the lines that the beam has passed since the last call, from the memories as they are now."""
+    def follow_beam(self) -> Iterator[None]:
+        """Paint the lines that the beam has passed, from the memories as they are now, with pauses between."""
         beam = self._beam
-        if beam is None or beam.lines_done == self._painted:
+        if beam is None:
             return
         total = beam.lines_per_field
-        start = max(self._painted, beam.lines_done - total)
-        begun = start // total * total
-        while begun < beam.lines_done:
-            first, last = max(start - begun, 0), min(beam.lines_done - begun, self.lines)
-            if first < last:
-                self._paint(first, last, self._monitor_image)
-            begun += total
-        self._painted = beam.lines_done
+        self._painted = max(self._painted, beam.lines_done - total)
+        at_once = max(1, PAINTED_AT_ONCE // self.elements)
+        while self._painted < beam.lines_done:
+            first = self._painted % total
+            if first >= self.lines:
+                # Skip the blanked lines.
+                self._painted = min(beam.lines_done, self._painted - first + total)
+                continue
+            last = min(first + at_once, self.lines, first + beam.lines_done - self._painted)
+            self._paint(first, last, self._monitor_image)
+            self._painted += last - first
+            if self._painted < beam.lines_done:
+                yield
 
     def _finish_field(self, beam: Beam, pixels: PackedColors) -> None:
         # Lines below the beam show the memories as they are now; in the retrace, all lines do.
-        self.follow_beam()
+        for _ in self.follow_beam():
+            pass
         line = beam.line if beam.line < self.lines else 0
         pixels[:line] = self._monitor_image[:line]
         self._paint(line, self.lines, pixels)
