@@ -132,7 +132,7 @@ class Draft:
             self.low_byte |= flag
         elif operand:
             words = numbers_of(value) if value else ()
-            allowed = (OPERANDS[operand].words,) if operand in OPERANDS else (1,)
+            allowed: tuple[int, ...] = (OPERANDS[operand].words,) if operand in OPERANDS else (1,)
             if operand == "conic" and self.format.name == "WC":
                 allowed = (6, 12)
             if self.format.requests_operands:

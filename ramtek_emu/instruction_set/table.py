@@ -9,7 +9,8 @@ Every row of both tables cites its sources: keys of docs/SOURCES.md, each with a
 
 Hardware: LIN, BTL, JPL and NCAR agree on all of this; the counts of words are Linton's `Argno` and `libdoc`.
 Assumed: CONE is 6 words, as `Argno`, `libdoc` and the header say, but 12 in WC, as LIN wc.c sends. Each of
-the 12 is the upper or the lower half of a number; the decoder tells where WC is taken with 6.
+the 12 is the upper or the lower half of a number; the decoder tells where WC is taken with 6. NCAR ramtek.h
+has another opcode, 8A, for conics with coefficients of 32 bits, so that WC may have 16 bits on the 9400.
 Assumed: DCL is one word, as its neighbors are; no client sends it.
 Assumed: the bits of the second flag word that no source names carry no words.
 """
