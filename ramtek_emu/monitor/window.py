@@ -179,7 +179,7 @@ class Monitor:
                 return
             except RamtekError as refusal:
                 report(str(refusal))
-        report("the film is lost")
+        report("the film is lost: no folder could take it")
 
     def _to_be_shown(self) -> tuple[object, ...]:
         return self.source.stamp, self._glass.stamp, self.overlay.stamp
