@@ -156,7 +156,7 @@ class Run:
 
         Returns the new hints; "" if there are none.
         """
-        hints, foreign = {}, getattr(display.processor, "foreign", None)
+        hints, foreign = {}, display.processor.foreign
         if "dark" not in self.hints and display.scan_out.is_dark:
             hints["dark"] = "words were drawn, and nothing is lit: --table gray shows them (F2 in a window)"
         if "foreign" not in self.hints and foreign is not None:

@@ -51,8 +51,8 @@ class Replay:
         begin = Ramtek9300(stream.configuration) if start is None else start
         self._keep(self._packer.pack(begin, 0, NO_WORDS))
         self.display = self.display_at(0)
-        self.display.scan_out.shown_table = begin.scan_out.shown_table
         """The display after `number` instructions."""
+        self.display.scan_out.shown_table = begin.scan_out.shown_table
         self._preparing = self._prepare()
 
     def __repr__(self) -> str:

@@ -168,6 +168,7 @@ SUBSTANTIATED: Final = (
         0x0E, "WVL", "write linked vectors", "PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c"
     ),
     InstructionFormat(0x0F, "WC", "write a conic", "LIN wc.c, LIN libdoc"),
+    InstructionFormat(0x10, "WPB", "write a plot", "LIN libdoc, LIN fplot.c, NCAR ramtek.h, format assumed"),
     InstructionFormat(0x13, "PUSHE", "save the environment", NAME_ALONE, (), extended=True),
     InstructionFormat(0x14, "POPE", "restore the environment", NAME_ALONE, (), extended=True),
     InstructionFormat(0x15, "LPF", "load a character", "LIN lcs.c", CHARACTER_ROWS),
@@ -237,14 +238,13 @@ SUBSTANTIATED: Final = (
 
 Hardware: LIN, PRG, BTL and PIC send or describe the rows that are not extended, except RAM. JPL and NCAR send
 the extended rows; FILL and WPT are in disabled code.
-Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the
-sources give numbers and names. Their executors say more.
+Assumed: the format of WPB, which LIN describes without its words; the formats of PUSHE, POPE, READP, RERR,
+WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the sources give numbers and names. Their executors say more.
 """
 
 UNIMPLEMENTED: Final = (
     (0x01, "LOAD", "load a hard register"),
     (0x02, "READ", "read a soft register"),
-    (0x10, "WPB", "write a plot box"),
     (0x11, "SCRX", "scroll along the lines"),
     (0x12, "SCRY", "scroll across the lines"),
     (0x18, "WKB", "write to the keyboard"),
@@ -338,13 +338,16 @@ UNIMPLEMENTED: Final = (
     (0x8C, "RTCS", "read the coordinates and the status of the tablet"),
     (0x8D, "WCVU", "write colored, unlinked vectors"),
 )
-"""Opcodes of the 9400 and 9460 of which only number and name are known: opcode, name, meaning.
+"""Opcodes of which only number and name are known: opcode, name, meaning.
 
 Hardware: NCAR ramtek.h lists them with a few words each, and no client sends them. SDS has a joke there.
+Assumed: the 9300 scrolls, since LIN libdoc has a scrolling count; the other rows are of the 9400 and 9460.
 """
 
 FORMATS: Final = SUBSTANTIATED + tuple(
-    InstructionFormat(opcode, name, meaning, "NCAR ramtek.h", extended=True, unimplemented=True)
+    InstructionFormat(
+        opcode, name, meaning, "NCAR ramtek.h", extended=name not in ("SCRX", "SCRY"), unimplemented=True
+    )
     for opcode, name, meaning in UNIMPLEMENTED
 )
 """All rows of the instruction table.

@@ -21,6 +21,7 @@ import os
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -331,36 +332,26 @@ class Monitor:
         Esc leaves full screen before anything else, and never closes the window. Shortcuts do not repeat
         while their key stays down.
         """
+        shortcuts: dict[str, Callable[[], object]] = {
+            "f3": self.toggle_recording,
+            "f10": self.toggle_fit,
+            "f11": self.toggle_full_screen,
+        }
+        # A program may take a second request to close in a row for consent to lose changes.
+        shortcuts |= {"return": self.toggle_full_screen} if key.alt else {}
+        shortcuts |= {"escape": self.toggle_full_screen} if self.full_screen else {}
+        shortcuts |= {"q": self.ask_to_close} if key.control else {}
+        pages: dict[str, Callable[[], object]] = {"f12": self._tell_of_screenshot}
+        pages |= {name: partial(self.overlay.turn_to, page) for name, page in PAGES.items()}
+        pages |= {"f2": self.turn_table} if self.on_key is None else {}
         if key.name in MODIFIERS:
             return
-        if key.name == "f11" or (key.name == "return" and key.alt):
-            if not key.repeated:
-                self.toggle_full_screen()
-        elif key.name == "escape" and self.full_screen:
-            self.toggle_full_screen()
-        elif key.name == "f3":
-            if not key.repeated:
-                self.toggle_recording()
-        elif key.name == "f10":
-            if not key.repeated:
-                self.toggle_fit()
-        elif key.name == "q" and key.control:
-            # A program may take a second request in a row for consent to lose changes.
-            if not key.repeated:
-                self.ask_to_close()
-        elif self.on_key is not None and self.on_key(key):
+        if key.name not in shortcuts and self.on_key is not None and self.on_key(key):
             return
-        elif key.name == "f2" and self.on_key is None:
-            if not key.repeated:
-                self.turn_table()
-        elif key.name == "f12":
-            if not key.repeated:
-                self._tell_of_screenshot()
-        elif key.name in PAGES:
-            if not key.repeated:
-                self.overlay.turn_to(PAGES[key.name])
-        elif key.name == "escape":
+        if key.name == "escape" and not self.full_screen:
             self.overlay.page = ""
+        elif not key.repeated and (run := (shortcuts | pages).get(key.name)):
+            run()
 
     def handle_release(self, release: Release) -> None:
         """Call `on_release` with the name of the key, unless it is a modifier."""

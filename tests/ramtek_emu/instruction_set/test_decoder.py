@@ -103,10 +103,10 @@ def test_rows_of_illegal_words_equal_single_illegal_words(stream: list[int], ext
 
 
 def test_an_instruction_known_by_name_only_is_consumed_whole() -> None:
-    # WPB with a foreground and data, a keyboard instruction, a display list's.
-    stream = np.array([0x1003, 0x0002, 7, 3, 1, 2, 0x1800, 0x4100, 0x0700], np.uint16)
+    # WPP with a foreground and data, a keyboard instruction, a display list's.
+    stream = np.array([0x3603, 0x0002, 7, 3, 1, 2, 0x1800, 0x4100, 0x0700], np.uint16)
     names = [instruction.format.name for instruction in Decoder(FAMILY).feed(stream)]
-    assert names == ["WPB", "WKB", "CDL", "NOP"]
+    assert names == ["WPP", "WKB", "CDL", "NOP"]
     strict = [instruction.format.name for instruction in Decoder(PRINCETON_9300).feed(stream)]
     assert strict == ["???"] * 8 + ["NOP"]
 
@@ -268,10 +268,10 @@ def test_the_operands_have_their_lengths_and_their_bits() -> None:
 def test_every_instruction_has_its_number() -> None:
     numbers = " ".join(f"{format.opcode:02X}:{format.name}" for format in SUBSTANTIATED)
     assert numbers == (
-        "03:LAM 04:RAM 05:RSET 06:INIT 07:NOP 08:SET 09:ERS 0A:WI 0B:RI 0C:WT 0D:WR 0E:WVL 0F:WC 13:PUSHE"
-        " 14:POPE 15:LPF 16:WCSS 17:RCSS 21:LPFRP 24:READP 25:RERR 26:ZOOM 27:SELVO 29:WAITVR 2A:WAITL"
-        " 2B:BERS 2C:WCSP 2D:WCSG 2E:RCSP 2F:RCSG 30:LCF 33:DDCC 35:WVU 38:WPT 39:WRP 3A:FILL 4E:ATTPF"
-        " 69:COPY 6D:CIRC"
+        "03:LAM 04:RAM 05:RSET 06:INIT 07:NOP 08:SET 09:ERS 0A:WI 0B:RI 0C:WT 0D:WR 0E:WVL 0F:WC 10:WPB"
+        " 13:PUSHE 14:POPE 15:LPF 16:WCSS 17:RCSS 21:LPFRP 24:READP 25:RERR 26:ZOOM 27:SELVO 29:WAITVR"
+        " 2A:WAITL 2B:BERS 2C:WCSP 2D:WCSG 2E:RCSP 2F:RCSG 30:LCF 33:DDCC 35:WVU 38:WPT 39:WRP 3A:FILL"
+        " 4E:ATTPF 69:COPY 6D:CIRC"
     )
     # The numbers without a row.
     assert {*range(0x8E)} - {format.opcode for format in FORMATS} == {0, *range(0x78, 0x7F)}
@@ -290,7 +290,7 @@ def test_flag_words_name_operands_in_the_order_of_their_bits(first: int, second:
 
 def test_a_9300_has_no_instruction_that_only_the_later_models_know() -> None:
     of_9300 = " ".join(format.name for format in FORMATS if not format.extended)
-    assert of_9300 == "LAM RAM RSET INIT NOP SET ERS WI RI WT WR WVL WC LPF WCSS RCSS"
+    assert of_9300 == "LAM RAM RSET INIT NOP SET ERS WI RI WT WR WVL WC WPB LPF WCSS RCSS SCRX SCRY"
     assert not any(format.unimplemented for format in SUBSTANTIATED)
 
 
