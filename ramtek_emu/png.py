@@ -7,15 +7,17 @@ from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from struct import pack, unpack_from
-from typing import Final
+from typing import TYPE_CHECKING, Final
 from zlib import crc32
 
 import numpy as np
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from ramtek_emu.arrays import Colors, Words
 from ramtek_emu.writing import PNG, check_suffix, write_atomically, write_numbered
+
+if TYPE_CHECKING:
+    from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 """The first bytes of a PNG file; chunks follow."""
@@ -67,6 +69,8 @@ def png_bytes(field: Colors, level: int | None = None) -> bytes:
 
     `level` is the compression, 0 to 9, by default `LEVEL`; the pixels are the same at every level.
     """
+    from PIL import Image
+
     buffer = BytesIO()
     level = LEVEL if level is None else level
     Image.fromarray(np.ascontiguousarray(field)).save(buffer, "PNG", compress_level=level)
@@ -87,6 +91,9 @@ def word_png_bytes(words: Words, entries: Colors) -> bytes:
     Assumed: a suggested palette must be sorted by falling frequency. All frequencies are 0 here, so the order
     of the words is allowed.
     """
+    from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
+
     rows = np.zeros(len(entries), [("color", "u1", 3), ("alpha", "u1"), ("frequency", ">u2")])
     rows["color"], rows["alpha"] = entries, 255
     chunks = PngInfo()
@@ -97,6 +104,8 @@ def word_png_bytes(words: Words, entries: Colors) -> bytes:
 
 def indexed_png_bytes(indices: Colors, palette: Colors) -> bytes:
     """Indices, (lines, elements) uint8, of a palette of 1 to 256 colors, (n, 3) uint8, as a PNG file."""
+    from PIL import Image
+
     image = Image.fromarray(np.ascontiguousarray(indices))
     image.putpalette(palette.tobytes())
     return _saved(image)

@@ -320,7 +320,8 @@ class Monitor:
         elif isinstance(user_input, Pointer):
             self.handle_pointer(user_input)
         elif isinstance(user_input, Release):
-            self.handle_release(user_input)
+            if self.on_release is not None and user_input.name not in MODIFIERS:
+                self.on_release(user_input.name)
         elif isinstance(user_input, Close):
             self.ask_to_close()
         elif self.on_drop is not None:
@@ -352,11 +353,6 @@ class Monitor:
             self.overlay.page = ""
         elif not key.repeated and (run := (shortcuts | pages).get(key.name)):
             run()
-
-    def handle_release(self, release: Release) -> None:
-        """Call `on_release` with the name of the key, unless it is a modifier."""
-        if self.on_release is not None and release.name not in MODIFIERS:
-            self.on_release(release.name)
 
     def _tell_of_screenshot(self) -> None:
         """Take a screenshot, without a message on it, and show its path."""
