@@ -10,7 +10,7 @@ looks dark, since only ten of sixteen bits are used. The texts are JSON. A value
 type, the length and the fields of the same value in a new display, or the error names the place.
 
 Snapshots may come from anywhere, so every size is checked before memory of that size is used: the file, the
-picture, the texts and the unpacked pixels. Pillow is not used here: it raises a dozen kinds of errors for
+picture, the texts and the unpacked pixels. Pillow does not read them: it raises a dozen kinds of errors for
 such files. This module reads and writes the small part of the PNG format that snapshots need, and refuses
 the rest: other depths, interlacing, filters, unknown critical chunks.
 """
@@ -25,6 +25,7 @@ import struct
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import fields as fields_of
+from itertools import islice
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
@@ -36,6 +37,7 @@ from ramtek_emu.configuration import Configuration, EntryFormat
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError, reason_of
 from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.png import SIGNATURE, chunk, chunks
 from ramtek_emu.processor.environment_executors import MOST_SAVED
 from ramtek_emu.timing import Timing
 from ramtek_emu.writing import PNG, check_suffix, write_atomically
@@ -276,7 +278,6 @@ def _array(pattern: AnyArray, value: Any, place: str) -> AnyArray:
     return array.view(pattern.dtype).reshape(pattern.shape)
 
 
-SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 MOST_FILE: Final = 48 << 20
 """Limit: the longest file, in bytes."""
 MOST_SIDE: Final = 4096
@@ -293,63 +294,46 @@ def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
     # A line begins with the number of its filter; 0 means no filter.
     rows = np.zeros((lines, 1 + 2 * elements), np.uint8)
     rows[:, 1:] = words.astype(">u2").view(np.uint8).reshape(lines, -1)
-    parts = [SIGNATURE, _chunk(b"IHDR", struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))]
+    parts = [SIGNATURE, chunk(b"IHDR", struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))]
     parts += [
-        _chunk(b"tEXt", keyword.encode("ascii") + b"\0" + text.encode("ascii"))
+        chunk(b"tEXt", keyword.encode("ascii") + b"\0" + text.encode("ascii"))
         for keyword, text in texts.items()
     ]
-    parts += [_chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)), _chunk(b"IEND", b"")]
+    parts += [chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)), chunk(b"IEND", b"")]
     return b"".join(parts)
 
 
 def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
     """The words and the texts of a PNG file of `picture_bytes`; SnapshotError if it is not valid."""
-    if data[:8] != SIGNATURE:
-        raise refusal("begin as a PNG file does", "as something else")
     size: tuple[int, int] | None = None
     texts: dict[str, str] = {}
     packed: list[bytes] = []
-    place, kind, text_size = 8, b"", 0
-    for _ in range(MOST_CHUNKS):
-        kind, content, place = _next_chunk(data, place)
-        if size is None:
-            size = _size(kind, content)
-        elif kind == b"IDAT":
-            packed.append(content)
-        elif kind == b"tEXt":
-            keyword, text = _text(content)
-            if keyword in texts:
-                raise refusal("have each text once", f"{keyword!r} twice")
-            texts[keyword] = text
-            text_size += len(text)
-            if text_size > MOST_TEXT:
-                raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
-        elif kind == b"IEND":
-            break
-        elif not kind[0] & 0x20:
-            raise refusal("have known chunks", f"a chunk {kind.decode('latin-1')!r}")
+    kind, text_size = b"", 0
+    try:
+        for kind, content in islice(chunks(data), MOST_CHUNKS):
+            if size is None:
+                size = _size(kind, content)
+            elif kind == b"IDAT":
+                packed.append(content)
+            elif kind == b"tEXt":
+                keyword, text = _text(content)
+                if keyword in texts:
+                    raise refusal("have each text once", f"{keyword!r} twice")
+                texts[keyword] = text
+                text_size += len(text)
+                if text_size > MOST_TEXT:
+                    raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
+            elif kind == b"IEND":
+                break
+            elif not kind[0] & 0x20:
+                raise refusal("have known chunks", f"a chunk {kind.decode('latin-1')!r}")
+    except SnapshotError:
+        raise
+    except ValueError as broken:
+        raise SnapshotError(f"{broken}; take a new snapshot with --snapshot") from None
     if kind != b"IEND" or size is None:
         raise refusal(f"end within {MOST_CHUNKS} chunks", "go on")
     return _words(packed, *size), texts
-
-
-def _chunk(kind: bytes, content: bytes) -> bytes:
-    """The bytes of a chunk, with length and checksum."""
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-
-def _next_chunk(data: bytes, place: int) -> tuple[bytes, bytes, int]:
-    """The kind and the content of a chunk, and the place of the next chunk."""
-    if len(data) < place + 12:
-        raise refusal("have whole chunks", f"end in a chunk, at byte {len(data)}")
-    length, kind = struct.unpack_from(">I4s", data, place)
-    end = place + 12 + length
-    if end > len(data):
-        raise refusal("have whole chunks", f"a chunk of {length} bytes at byte {place} of {len(data)}")
-    content = data[place + 8 : end - 4]
-    if zlib.crc32(content, zlib.crc32(kind)) != struct.unpack_from(">I", data, end - 4)[0]:
-        raise refusal("have chunks with a right checksum", f"a wrong checksum at byte {place}")
-    return kind, content, end
 
 
 def _size(kind: bytes, content: bytes) -> tuple[int, int]:

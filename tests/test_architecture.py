@@ -74,7 +74,7 @@ PLACES = {
     ("pygame",): {("ramtek_emu.monitor.glass", True)},
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
     ("PIL",): {
-        ("ramtek_emu.png", True), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
+        ("ramtek_emu.png", False), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
         ("autocolor.scene.kinds", False),
     },
     ("platformdirs",): {("autocolor.files.state", True)},

@@ -14,6 +14,7 @@ from ramtek_emu.commands.displays import (
     read_stream,
     refuse_outputs,
     start_option,
+    table_option,
     tell,
 )
 
@@ -60,6 +61,7 @@ Examples:
 )
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
 @configuration_option
+@table_option
 @start_option
 def inspect(
     stream: str,
@@ -70,6 +72,7 @@ def inspect(
     as_json: bool,
     force: bool,
     configuration: str | None,
+    table: str | None,
     start: str | None,
 ) -> None:
     """Stop a display at any instruction of STREAM, a file of 16-bit words, low byte first; - is stdin.
@@ -79,7 +82,7 @@ def inspect(
     if who is not None and who_entry is not None:
         raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
     refuse_outputs(force, pictures=[output])
-    display = display_asked_for(configuration, start)
+    display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.inspection.replay import Replay
 

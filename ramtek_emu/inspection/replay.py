@@ -52,6 +52,7 @@ class Replay:
         self._keep(self._packer.pack(begin, 0, NO_WORDS))
         self.display = self.display_at(0)
         """The display after `number` instructions."""
+        self.display.scan_out.shown_table = begin.scan_out.shown_table
         self._preparing = self._prepare()
 
     def __repr__(self) -> str:

@@ -84,7 +84,7 @@ def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Poin
 
 
 RASTER_BYTES: Final = 1 << 12
-"""The bytes of a raster that are written at once. Limit: a bound on the time between two pauses, 1 to 4 ms."""
+"""The bytes of a raster that are written at once. Limit: a bound on the time between pauses, 1 to 4 ms."""
 
 
 def write_raster(processor: Processor, instruction: Instruction) -> Pauses:

@@ -10,7 +10,7 @@ from ramtek_emu import FAMILY, GMR_9300, Configuration, Ramtek9300, Timing
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.processor.processor import Status
 from ramtek_emu.snapshot import display_of, snapshot_bytes
-from tests.ramtek_emu.displays import sent
+from tests.ramtek_emu.recorded_streams import words
 from tests.ramtek_emu.strategies import SMALL
 from tests.tables import refused
 
@@ -30,11 +30,11 @@ def test_the_paper_s_display_takes_what_a_9300_takes_and_family_what_all_members
     assert Ramtek9300().configuration is GMR_9300
     assert replace(GMR_9300, name="FAMILY", extended=True) == FAMILY
     # ZOOM, the second operand flag word, PUSHE: illegal words, and what follows is executed.
-    for words in ("2600 0101", "0804 0008 FFFF 0000", "1300"):
-        display = sent(words, "0902 0044 5 3 3 3 3", configuration=GMR_9300)
-        assert Status.ILLEGAL in display.status
-        assert display.words[3, 3] == 5
-        assert sent(words).status == Status.READY
+    for text in ("2600 0101", "0804 0008 FFFF 0000", "1300"):
+        for name, status in (("GMR_9300", Status.READY | Status.ILLEGAL), ("FAMILY", Status.READY)):
+            display = Ramtek9300(name)
+            display.send(words(f"{text} 0902 0044 5 3 3 3 3"))
+            assert (display.status, display.words[3, 3]) == (status, 5)
 
 
 def test_the_largest_and_the_least_sizes_are_taken() -> None:

@@ -25,6 +25,7 @@ from ramtek_emu import (
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.png import SIGNATURE, chunk
 from ramtek_emu.snapshot import (
     MOST_TEXT,
     display_of,
@@ -263,16 +264,12 @@ def test_a_list_is_no_longer_than_it_may_be() -> None:
         from_plain([(0, 0)], [[1, 2]] * 257, "cursors.tracking_devices")
 
 
-def chunk(kind: bytes, content: bytes) -> bytes:
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-
 def sized(elements: int, lines: int, depth: int = 16, color: int = 0, interlaced: int = 0) -> bytes:
     return struct.pack(">IIBBBBB", elements, lines, depth, color, 0, 0, interlaced)
 
 
 def hostile(*chunks: bytes, header: bytes = sized(13, 9)) -> bytes:
-    return b"\x89PNG\r\n\x1a\n" + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
+    return SIGNATURE + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
 
 
 def picture(elements: int, lines: int, *chunks: bytes) -> bytes:
@@ -289,9 +286,9 @@ TIME = chunk(b"tIME", b"")
     [
         (b"", "begin as a PNG file does"),
         (b"GIF89a", "begin as a PNG file does"),
-        (SNAPSHOT[:-5], "have whole chunks"),
-        (SNAPSHOT[:40], "have whole chunks"),
-        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksum"),
+        (SNAPSHOT[:-5], "whole chunks"),
+        (SNAPSHOT[:40], "whole chunks"),
+        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksums"),
         (hostile(header=sized(1 << 31, 1)), "1 to 4096 elements and lines"),
         (picture(4097, 1), "1 to 4096 elements and lines"),
         (picture(1, 4097), "1 to 4096 elements and lines"),
@@ -318,7 +315,7 @@ def test_a_hostile_file_is_refused_by_one_sentence(data: bytes, part: str) -> No
     with pytest.raises(SnapshotError) as refusal:
         picture_of(data)
     assert part in str(refusal.value)
-    assert str(refusal.value).endswith("take a new one with --snapshot")
+    assert str(refusal.value).endswith("with --snapshot")
 
 
 def test_pixels_that_are_too_many_take_no_memory() -> None:
