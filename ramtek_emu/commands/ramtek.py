@@ -29,7 +29,6 @@ class RamtekGroup(CommandGroup):
         "diff": "the first instruction after which two streams differ",
         "assemble": "a listing back into its stream",
         "serve": "a display for programs, over TCP, on a Unix socket or on a pipe",
-        "tty": "a program that opens a device, on a display of serve --unix",
     }
 
 
