@@ -25,7 +25,7 @@ from ramtek_emu import (
 )
 from ramtek_emu.host.port import SocketPort, checked_timeout, host_and_port, packet_socket
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
-from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
+from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at
 from tests.tables import refused
 
 
@@ -272,25 +272,6 @@ def test_each_write_is_rounded_down_to_whole_words_alone_and_has_at_most_64_kib(
         assert str(refusal.value) == (
             "a write must be at most 65536 bytes, not 65537; divide it at an even place"
         )
-
-
-def test_more_hosts_than_the_line_holds_find_a_place_later(tmp_path: Path) -> None:
-    path = tmp_path / "display"
-
-    def draw(number: int) -> None:
-        with UnixPort(path, timeout=60) as port:
-            port.send(words(f"0902 0044 5 {number:X} 9 {number:X} 9"))
-
-    with serving_at(path) as server:
-        first = UnixPort(path)
-        until(lambda: server.busy)
-        hosts = [threading.Thread(target=draw, args=(number,)) for number in range(150)]
-        for host in hosts:
-            host.start()
-        first.close()
-        for host in hosts:
-            host.join()
-        assert (server.display.words[9, :150] == 5).all()
 
 
 def test_a_recorder_without_a_display_gives_no_words() -> None:

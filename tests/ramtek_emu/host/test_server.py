@@ -5,6 +5,7 @@ import os
 import selectors
 import socket
 import stat
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -14,7 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
+from ramtek_emu import OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, UnixPort, instructions
 from ramtek_emu.arrays import Words
 from ramtek_emu.host.port import break_off, packet_socket, prepared, write_socket
 from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
@@ -492,3 +493,42 @@ test_a_path_where_no_socket_can_be_made = refused(
     ],
     OutputError,
 )
+
+
+def test_hosts_that_start_with_the_server_are_all_served(tmp_path: Path) -> None:
+    path, failures = tmp_path / "display", []
+
+    def draw(number: int) -> None:
+        try:
+            with UnixPort(path, timeout=60) as port:
+                port.send(words(f"0902 0044 5 {number:X} 9 {number:X} 9"))
+        except PortError as failure:
+            failures.append(failure)
+
+    hosts = [threading.Thread(target=draw, args=(number,)) for number in range(200)]
+    for host in hosts:
+        host.start()
+    with serving_at(path) as server:
+        for host in hosts:
+            host.join()
+        assert not failures
+        assert (server.display.words[9, :200] == 5).all()
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_name_appears_when_its_socket_listens_and_a_refused_server_leaves_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = os.link
+
+    def observed(hidden: str, path: str) -> None:
+        with packet_socket() as host:
+            host.connect(hidden)
+        # Another server takes the name meanwhile.
+        Path(path).touch()
+        link(hidden, path)
+
+    monkeypatch.setattr(os, "link", observed)
+    with pytest.raises(OutputExistsError):
+        UnixServer(Ramtek9300(), tmp_path / "display")
+    assert os.listdir(tmp_path) == ["display"]
