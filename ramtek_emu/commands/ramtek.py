@@ -32,13 +32,6 @@ class RamtekGroup(CommandGroup):
     }
 
 
-def configurations(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The names of configurations, for completion in a shell. The import is late to keep help fast."""
-    from ramtek_emu.commands.displays import complete_configurations
-
-    return complete_configurations(context, parameter, incomplete)
-
-
 @click.group(
     cls=RamtekGroup,
     invoke_without_command=True,
@@ -55,7 +48,6 @@ def configurations(context: click.Context, parameter: click.Parameter, incomplet
 @click.option(
     "--configuration",
     metavar="NAME",
-    shell_complete=configurations,
     help="The display to show it on; GMR_9300 if not given.",
 )
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")

@@ -45,10 +45,6 @@ class Recorder:
         self._file = file
         self._port = port
 
-    def __repr__(self) -> str:
-        file = getattr(self._file, "name", type(self._file).__name__)
-        return f"Recorder({file}{'' if self._port is None else f', {self._port!r}'})"
-
     def send(self, words: Words) -> None:
         """Write the words to the file, low byte first, and pass them on."""
         stream = checked_stream(words)
@@ -201,25 +197,20 @@ class SocketPort:
                 self._close(min(self.timeout, HURRIED_SECONDS))
 
     def _close(self, seconds: float) -> None:
+        """End our side, and read until the display ends; PortError if it ended first, or does not end."""
         if self._is_closed:
             return
-        try:
-            self._end(seconds)
-        finally:
-            self.socket.close()
-
-    def _end(self, seconds: float) -> None:
-        """End our side, and read until the display ends; PortError if it ended first, or does not end."""
         deadline = time.monotonic() + seconds
-        while self._take() and time.monotonic() < deadline:
-            self._received.clear()
-        try:
-            self.socket.shutdown(socket.SHUT_WR)
-        except OSError as cause:
-            raise self._gone(reason_of(cause)) from cause
-        while (left := deadline - time.monotonic()) > 0:
-            if self._ready(left) and self._read() == b"":
-                return
+        with self.socket:
+            while self._take() and time.monotonic() < deadline:
+                self._received.clear()
+            try:
+                self.socket.shutdown(socket.SHUT_WR)
+            except OSError as cause:
+                raise self._gone(reason_of(cause)) from cause
+            while (left := deadline - time.monotonic()) > 0:
+                if self._ready(left) and self._read() == b"":
+                    return
         raise PortError(
             f"a display must execute all words within {seconds:g} seconds, and "
             f"{self.address} has not: it may be serving another host first; give a longer timeout"
