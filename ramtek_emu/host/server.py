@@ -80,7 +80,7 @@ class HostSession:
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
         self._left = NO_WORDS
-        self._record = record or (lambda _: None)
+        self._record_bytes = record
         self.leave()
 
     @property
@@ -105,7 +105,7 @@ class HostSession:
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
         words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
-        self._left = np.concatenate((self._left, words))
+        self._left = np.concatenate((self._left, words)) if len(self._left) else words
         return self._execute(words)
 
     def _execute(self, words: Words) -> Iterator[bytes]:
@@ -127,7 +127,7 @@ class HostSession:
             else:
                 self.is_within = False
             if executed := len(self._left) - len(words) + place if place else 0:
-                self._record(self._left[:executed].astype("<u2", copy=False).tobytes())
+                self._record(self._left[:executed])
                 self._left = words[place:]
             was_within, resets = self.is_within, self.display.resets
             yield self._reply()
@@ -137,6 +137,10 @@ class HostSession:
                 # Leave the instruction that the reset abandoned out of the recording.
                 place = next(steps)
                 self._left = words[place:]
+
+    def _record(self, words: Words) -> None:
+        if self._record_bytes is not None:
+            self._record_bytes(words.astype("<u2", copy=False).tobytes())
 
     def _reply(self) -> bytes:
         count = min(self.display.processor.waiting, REPLY_PIECE)
@@ -151,7 +155,7 @@ class HostSession:
         self._left = self._left[self.display.decoder.pending_words :]
         self.is_within = False
         self.display.reset()
-        self._record(instructions.reset().astype("<u2", copy=False).tobytes())
+        self._record(instructions.reset())
 
     def leave(self) -> None:
         """Drop the words that are left, the odd byte and the unread replies.
