@@ -40,7 +40,7 @@ Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
   ramtek serve --port 9300 --inspect                stop its host, step, ask who wrote a pixel
-  ramtek serve --unix /tmp/display                  one for programs of the time; see examples
+  ramtek serve --unix /tmp/display                  one for programs that open a device
   ramtek serve --port 9300 --joystick -             type `cursor 100 200 enter` to point at something
   old_program | ramtek serve --stdio -o out.png     a program that only draws
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
