@@ -465,10 +465,8 @@ def fault_of_snapshot(_: bytes) -> str:
     return "" if display.words.max() <= display.configuration.largest_word else "a word that cannot be"
 
 
-MARK: Final = b"<mark>"
-"""Where what is no display sends a mark."""
 REPLIES: Final = (
-    bytes(range(64)), b"\2\0" + MARK + b"\1\2\3\4" + MARK, b"\3SSH-2.0-OpenSSH_9.2\r\n", bytes(400),
+    bytes(range(64)), b"\2\0\1\2\3\4", b"\3SSH-2.0-OpenSSH_9.2\r\n", bytes(400),
     b"\1" + struct.pack("<40H", *(word for place in range(20) for word in (600, 200 + place | 0x3000))),
 )  # fmt: skip
 
@@ -482,9 +480,7 @@ def fault_of_show(data: bytes) -> str:
             display, _ = listener.accept()
             with display, contextlib.suppress(OSError):
                 display.settimeout(10)
-                for number, segment in enumerate(data[1:].split(MARK)):
-                    display.send(b"\0" * bool(number), socket.MSG_OOB)
-                    display.sendall(segment)
+                display.sendall(data[1:])
                 if not stays:
                     display.shutdown(socket.SHUT_WR)
                 while display.recv(1 << 16):

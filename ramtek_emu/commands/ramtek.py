@@ -30,15 +30,7 @@ class RamtekGroup(CommandGroup):
         "assemble": "a listing back into its stream",
         "conformance": "the claims of the conformance suite, here or on another emulator",
         "serve": "a display for programs, over TCP, on a Unix socket or on a pipe",
-        "tty": "a program that opens a device, on a display of serve --unix",
     }
-
-
-def configurations(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The names of configurations, for completion in a shell. The import is late to keep help fast."""
-    from ramtek_emu.commands.displays import complete_configurations
-
-    return complete_configurations(context, parameter, incomplete)
 
 
 @click.group(
@@ -57,7 +49,6 @@ def configurations(context: click.Context, parameter: click.Parameter, incomplet
 @click.option(
     "--configuration",
     metavar="NAME",
-    shell_complete=configurations,
     help="The display to show it on; GMR_9300 if not given.",
 )
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")

@@ -205,7 +205,7 @@ class ScanOut:
         return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
 
     def follow_beam(self) -> Iterator[None]:
-        """Paint the lines that the beam has passed, from the memories as they are now; pauses now and then."""
+        """Paint the lines that the beam has passed, from the memories as they are now, with pauses."""
         beam = self._beam
         if beam is None:
             return

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from ramtek_emu import Configuration, Ramtek9300
-from ramtek_emu.host.server import HostSession
 from ramtek_emu.inspection.panels import Line
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import InspectionSession
@@ -37,7 +36,7 @@ class Served:
 
     def __init__(self, display: Ramtek9300) -> None:
         self.host = RunningHost(display)
-        self.host_session = HostSession(display, self.host.record, self.host.gate)
+        self.host_session = self.host.session
         self.host.step = self.step
         self.inspection = InspectionSession(self.host.replay, self.host)
         self.replies = b""
