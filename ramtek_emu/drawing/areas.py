@@ -10,15 +10,25 @@ every 5 ms and every 15 ms there. On 4096 x 4096, the largest display, a slice c
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from typing import Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Indices
+from ramtek_emu.memory.scan_orders import Window
 
+MOST_AT_ONCE: Final = 1 << 18
+"""The number of pixels that are filled at once. Limit: a bound on the time between two pauses, 1 to 4 ms."""
 MOST_RUNS: Final = 1 << 15
 """The number of runs that are linked at once. Limit: a bound on the time between two pauses, 1 to 2 ms."""
+
+
+def bands(window: Window) -> Iterator[Window]:
+    """Cut a window into bands of whole lines, of some hundred thousand pixels each."""
+    lines = max(1, MOST_AT_ONCE // max(1, window.width))
+    for top in range(window.top, window.bottom + 1, lines):
+        yield window._replace(top=top, bottom=min(top + lines - 1, window.bottom))
 
 
 def area(open_pixels: Dots, line: int, element: int) -> Generator[None, None, Dots]:

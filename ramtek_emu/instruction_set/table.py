@@ -168,6 +168,7 @@ SUBSTANTIATED: Final = rows_of("""
 0D WR | write a raster of one bit a pixel | LIN wr.c, PRG rast.c
 0E WVL | write linked vectors | LIN wv.c, LIN wvs.c, PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c
 0F WC | write a conic | LIN wc.c, LIN libdoc
+10 WPB | write a plot | LIN libdoc, LIN fplot.c, NCAR ramtek.h, format assumed
 13+ PUSHE none | save the environment | NCAR ramtek.h, format assumed
 14+ POPE none | restore the environment | NCAR ramtek.h, format assumed
 15 LPF rows_0_1 rows_2_3 rows_4_5 rows_6_7 rows_8_9 rows_10_11 | load a character | LIN lcs.c
@@ -202,12 +203,12 @@ Hardware: LIN, PRG, BTL and PIC send or describe the rows that are not extended,
 the extended rows; FILL and WPT are in disabled code.
 Assumed: RAM belongs to the 9300, too, though only clients of the 9460 were seen to send it; without it, a
 client that reads the table of a 9300 would wait for its answer forever.
-Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the
-sources give numbers and names. Their executors say more.
+Assumed: the format of WPB, which LIN describes without its words; the formats of PUSHE, POPE, READP, RERR,
+WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the sources give numbers and names. Their executors say more.
 """
 
 NAMES: Final = """
-01+ LOAD load a hard register; 02+ READ read a soft register; 10 WPB write a plot box;
+01+ LOAD load a hard register; 02+ READ read a soft register;
 11 SCRX scroll along the lines; 12 SCRY scroll across the lines; 18+ WKB write to the keyboard;
 19+ RKB read the keyboard; 1A+ SPS sense the status of peripherals; 1B+ LDL load a display list;
 1C+ RDL read a display list; 1D+ CCM call control memory; 1E+ XIM execute instruction memory;
@@ -250,7 +251,7 @@ NAMES: Final = """
 """Opcodes of which only number, name and meaning are known, as in the rows above.
 
 Hardware: NCAR ramtek.h lists them with a few words each, and no client sends them. SDS has a joke there.
-LIN libdoc has a scrolling count, so that SCRX and SCRY belong to the 9300, too.
+Assumed: the 9300 scrolls, since LIN libdoc has a scrolling count; the other rows are of the 9400 and 9460.
 """
 
 UNIMPLEMENTED: Final = tuple(

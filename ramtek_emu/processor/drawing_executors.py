@@ -1,4 +1,4 @@
-"""Executors of the instructions that draw: vectors, points, conics, circles and text.
+"""Executors of the instructions that draw: vectors, points, conics, circles, plots and text.
 
 Assumed: with the additive flag, the pixels between the dots of characters, rasters and textures stay
 unchanged, as its name suggests; without it the background word is written there.
@@ -12,11 +12,11 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Numbers
-from ramtek_emu.drawing import curves, text, vectors
+from ramtek_emu.drawing import curves, plots, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register
+from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register, signed
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
@@ -107,6 +107,43 @@ def write_conic(processor: Processor, instruction: Instruction) -> None:
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
+def write_plot(processor: Processor, instruction: Instruction) -> Pauses | None:
+    """Draw a bar for each number of the data, from the base line to the number.
+
+    Hardware: LIN libdoc (a starting point, a scanning mode, the dimension and the spacing in the direction of
+    scanning, a base line); LIN fplot.c (data are lines of the screen; DIM 1 and SPACE 1 put n numbers on n
+    elements, so that spacing is the distance of two bars and dimension the width of a bar).
+    Assumed: the opcode, by NCAR's name and by its place among the opcodes of the 9300; that all operands come
+    by flag words as in other instructions; that a mark is a bar in the foreground and includes both ends. The
+    second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters. The scan order gives the
+    direction of the steps; data and base line are the coordinates across it, absolute in each addressing
+    mode, with a sign. Only the memory and the write window clip. The operating point is then where the next
+    bar begins, at the last number, as fplot.c starts at the first number.
+    """
+    parameters, order = processor.parameters, processor.parameters.order
+    values = processor.points(instruction, 1)[:, 0]
+    if not len(values):
+        return None
+    width = max(1, parameters.dimensions[0])
+    backward = order.upward if order.vertical else order.leftward
+    step = -parameters.spacing[0] if backward else parameters.spacing[0]
+    steps = parameters.start[order.vertical] + step * np.arange(len(values) + 1)
+    places = steps.astype(np.int16).astype(np.int64)
+    end = int(places[-1]), int(values[-1])
+    parameters.start = Point(*(end[::-1] if order.vertical else end))
+    word, _ = processor.colors(instruction)
+    return plots.write_bars(
+        processor.frame_buffer,
+        places[:-1] - (width - 1 if backward else 0),
+        values,
+        width=width,
+        base=signed(parameters.base_line),
+        vertical=order.vertical,
+        word=word,
+        enable=parameters.enable,
+    )
+
+
 def write_text(processor: Processor, instruction: Instruction) -> None:
     """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
     parameters = processor.parameters
@@ -166,6 +203,7 @@ EXECUTORS: Final[Executors] = {
     "WPT": write_points,
     "CIRC": write_circles,
     "WC": write_conic,
+    "WPB": write_plot,
     "WT": write_text,
     "LPF": load_character,
     "LPFRP": load_reversed_character,

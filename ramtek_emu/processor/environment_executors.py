@@ -16,10 +16,21 @@ MOST_SAVED: Final = 16
 """The number of environments that PUSHE can save. Assumed: one more sets the illegal-instruction status."""
 
 
+FORMAT_OF_OPCODE: Final = {format.opcode: format for format in FORMATS}
+NO_OPCODES: Final = bytes(set(range(256)) - FORMAT_OF_OPCODE.keys())
+"""The opcodes that no display has."""
+
+
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
     """Hardware: PRG (the status bit). Assumed: only the illegal words are skipped."""
     processor.flag_illegal()
-    processor.illegal_words += len(instruction.data)
+    words = instruction.data
+    processor.illegal_words += len(words)
+    if processor.foreign is None and not processor.configuration.extended:
+        opcodes = words.astype(">u2").tobytes()[::2].translate(None, NO_OPCODES)
+        if opcodes:
+            format = FORMAT_OF_OPCODE[opcodes[0]]
+            processor.foreign = format.name if format.extended else "operand flags 2"
 
 
 def consume(processor: Processor, instruction: Instruction) -> None:

@@ -81,10 +81,10 @@ def test_coefficients_are_twelve_words_in_wc_alone_and_six_where_twelve_make_no_
 
 
 def test_an_instruction_known_by_name_only_is_consumed_whole_where_the_display_has_it() -> None:
-    # A plot with a foreground and data, a keyboard instruction, a display list's.
-    stream = "1003 0002 7 3 1 2 1800 4100 0700"
-    assert names(stream) == "WPB WKB CDL NOP"
-    assert names(stream, PRINCETON_9300) == "WPB ??? NOP"
+    # Scrolling with a foreground and data, a keyboard instruction, a display list's.
+    stream = "1103 0002 7 3 1 2 1800 4100 0700"
+    assert names(stream) == "SCRX WKB CDL NOP"
+    assert names(stream, PRINCETON_9300) == "SCRX ??? NOP"
 
 
 def test_a_9300_knows_no_second_operand_flag_word() -> None:
@@ -209,13 +209,13 @@ def test_the_operands_have_their_lengths_and_their_bits() -> None:
 def test_every_instruction_has_its_number() -> None:
     numbers = " ".join(f"{format.opcode:02X}:{format.name}" for format in SUBSTANTIATED)
     assert numbers == (
-        "03:LAM 04:RAM 05:RSET 06:INIT 07:NOP 08:SET 09:ERS 0A:WI 0B:RI 0C:WT 0D:WR 0E:WVL 0F:WC 13:PUSHE"
-        " 14:POPE 15:LPF 16:WCSS 17:RCSS 21:LPFRP 24:READP 25:RERR 26:ZOOM 27:SELVO 29:WAITVR 2A:WAITL"
-        " 2B:BERS 2C:WCSP 2D:WCSG 2E:RCSP 2F:RCSG 30:LCF 33:DDCC 35:WVU 38:WPT 39:WRP 3A:FILL 4E:ATTPF"
-        " 69:COPY 6D:CIRC"
+        "03:LAM 04:RAM 05:RSET 06:INIT 07:NOP 08:SET 09:ERS 0A:WI 0B:RI 0C:WT 0D:WR 0E:WVL 0F:WC 10:WPB"
+        " 13:PUSHE 14:POPE 15:LPF 16:WCSS 17:RCSS 21:LPFRP 24:READP 25:RERR 26:ZOOM 27:SELVO 29:WAITVR"
+        " 2A:WAITL 2B:BERS 2C:WCSP 2D:WCSG 2E:RCSP 2F:RCSG 30:LCF 33:DDCC 35:WVU 38:WPT 39:WRP 3A:FILL"
+        " 4E:ATTPF 69:COPY 6D:CIRC"
     )
     of_9300 = " ".join(format.name for format in FORMATS if not format.extended)
-    assert of_9300 == "LAM RAM RSET INIT NOP SET ERS WI RI WT WR WVL WC LPF WCSS RCSS WPB SCRX SCRY"
+    assert of_9300 == "LAM RAM RSET INIT NOP SET ERS WI RI WT WR WVL WC WPB LPF WCSS RCSS SCRX SCRY"
 
 
 def test_every_row_cites_sources_of_the_list_and_their_files() -> None:
