@@ -8,7 +8,7 @@ from typing import Final
 import click
 
 from ramtek_emu.commands.displays import complete_configurations, open_stream
-from ramtek_emu.configuration import GMR_9300, configuration_named
+from ramtek_emu.configuration import GMR_9300, checked_configuration
 
 EXAMPLES: Final = """\b
 Examples:
@@ -34,7 +34,7 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
 
     `ramtek assemble` turns the listing into the same stream again, word for word.
     """
-    chosen = GMR_9300 if configuration is None else configuration_named(configuration)
+    chosen = GMR_9300 if configuration is None else checked_configuration(configuration)
     file = open_stream(stream)
 
     from ramtek_emu.instruction_set.disassembler import items

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, InstructionError
+from ramtek_emu import FAMILY, PRINCETON_9300, Configuration, InstructionError
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.disassembler import items
@@ -41,7 +41,7 @@ conics = st.builds(
 def test_a_stream_is_split_as_by_a_reader_of_single_words_however_it_is_cut(
     stream: list[int], places: list[int]
 ) -> None:
-    decoder = Decoder()
+    decoder = Decoder(FAMILY)
     parts: list[list[int]] = []
     for piece in cuts(stream, places):
         used = 0
@@ -59,18 +59,18 @@ def test_a_stream_is_split_as_by_a_reader_of_single_words_however_it_is_cut(
 
 def test_data_are_views_of_the_words_sent() -> None:
     stream = np.array([0x0A01, 6, 1, 2, 3], np.uint16)
-    (instruction,) = Decoder().feed(stream)
+    (instruction,) = Decoder(FAMILY).feed(stream)
     assert np.shares_memory(instruction.data, stream)
 
 
-def names(text: str, configuration: Configuration = GMR_9300) -> str:
+def names(text: str, configuration: Configuration = FAMILY) -> str:
     return " ".join(instruction.format.name for instruction in Decoder(configuration).feed(words(text)))
 
 
 def test_coefficients_are_twelve_words_in_wc_alone_and_six_where_twelve_make_no_sense() -> None:
     six, twelve = "1 2 3 4 5 6", "0 1 0 2 0 3 0 4 0 5 0 6"
     stream = f"0802 1000 {six} 0902 4 7 0F03 9000 {six} 64 64 4 5A 6E 0F03 9000 {twelve} 64 64 4 5A 6E"
-    decoded = list(Decoder().feed(words(stream)))
+    decoded = list(Decoder(FAMILY).feed(words(stream)))
     assert [part.format.name for part in decoded] == ["SET", "ERS", "WC", "WC"]
     assert [part.operands["conic"] for part in decoded if part.format.name != "ERS"] == [
         tuple(words(six)),
@@ -128,7 +128,7 @@ def test_a_listing_does_not_depend_on_how_the_stream_was_cut(stream: list[int], 
     whole = np.array(stream, "<u2").tobytes()
     pieces = [part.astype("<u2").tobytes() for part in cuts(stream, places)]
     pieces = [half for piece in pieces for half in (piece[:1], piece[1:])]
-    assert [line for item in items(pieces) for line in item.lines()] == listing(whole)
+    assert [line for item in items(pieces, FAMILY) for line in item.lines()] == listing(whole)
 
 
 @pytest.mark.parametrize("number", range(len(RECORDED)))

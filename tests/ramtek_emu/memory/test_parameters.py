@@ -6,7 +6,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu import FAMILY, Ramtek9300, instructions
 from ramtek_emu.instruction_set.table import OPERANDS, Flags
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursor
@@ -79,7 +79,7 @@ def test_every_operand_is_read_as_the_words_that_set_it(name: str) -> None:
 
 
 def test_track_stays_on_and_enter_is_reported_once() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     display.joystick.move_to(320, 200)
     display.joystick.track = True
     display.joystick.press_enter()
@@ -113,7 +113,7 @@ def test_reset_clears_an_unread_enter_and_leaves_the_cursors() -> None:
 
 
 def test_the_joystick_stays_on_the_screen_and_moves_its_cursors() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     display.joystick.move_to(10_000, -5)
     assert display.joystick.position == (639, 0)
     display.joystick.move_by(-9, 7)

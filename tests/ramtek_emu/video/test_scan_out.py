@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import (
+    FAMILY,
     GMR_9300,
     JPL_9460,
     NCAR_9460,
@@ -285,7 +286,7 @@ def test_a_cursor_is_dark_on_a_light_picture_and_clipped_at_the_edges() -> None:
     assert np.count_nonzero(display.field()[..., 0] == 0) == 12
 
 
-TIMED = replace(GMR_9300, timing=Timing())
+TIMED = replace(FAMILY, timing=Timing())
 
 
 def colors(display: Ramtek9300) -> list[int]:
