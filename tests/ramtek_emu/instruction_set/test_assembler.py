@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, ListingError
+from ramtek_emu import FAMILY, PRINCETON_9300, Configuration, ListingError
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import listing, words
@@ -23,7 +23,7 @@ def assembled(program: str) -> list[int]:
 @given(
     streams().map(lambda stream: np.array(stream, "<u2").tobytes()) | st.binary(max_size=3000),
     st.binary(max_size=1),
-    st.sampled_from([GMR_9300, PRINCETON_9300]),
+    st.sampled_from([FAMILY, PRINCETON_9300]),
 )
 def test_assembling_a_listing_gives_any_bytes_back(
     stream: bytes, odd_byte: bytes, configuration: Configuration
