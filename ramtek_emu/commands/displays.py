@@ -37,7 +37,7 @@ configuration_option: Final = click.option(
     "--configuration",
     metavar="NAME",
     shell_complete=complete_configurations,
-    help="The display; GMR_9300 if not given.",
+    help="The display; GMR_9300 if not given. NAME-monochrome has a black-and-white monitor.",
 )
 start_option: Final = click.option(
     "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, ListingError
+from ramtek_emu import FAMILY, PRINCETON_9300, Configuration, ListingError
 from ramtek_emu.instruction_set.assembler import MOST_LINE, assemble, string_of, tokens_of
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.recorded_streams import listing, words
@@ -20,7 +20,7 @@ def assembled(program: str) -> list[int]:
     return numbers
 
 
-@given(streams(), st.binary(max_size=1), st.sampled_from([GMR_9300, PRINCETON_9300]))
+@given(streams(), st.binary(max_size=1), st.sampled_from([FAMILY, PRINCETON_9300]))
 def test_assembling_a_listing_gives_any_words_back(
     stream: list[int], odd_byte: bytes, configuration: Configuration
 ) -> None:
