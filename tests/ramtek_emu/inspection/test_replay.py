@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, Ramtek9300, Timing, instructions
+from ramtek_emu import FAMILY, PRINCETON_9300, Configuration, Ramtek9300, Timing, instructions
 from ramtek_emu.inspection.differences import first_difference, first_different_instruction
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.states import Packer, size_of
@@ -113,7 +113,7 @@ def test_a_replay_goes_on_from_the_display_that_is_given_and_leaves_it_alone() -
     assert snapshot_bytes(start) == before
 
 
-@pytest.mark.parametrize("configuration", [GMR_9300, PRINCETON_9300])
+@pytest.mark.parametrize("configuration", [FAMILY, PRINCETON_9300])
 @given(words=streams(), places=st.lists(st.integers(0, 60), max_size=5))
 def test_instructions_are_counted_as_the_listing_shows_them(
     configuration: Configuration, words: list[int], places: list[int]
