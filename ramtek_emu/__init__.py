@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from typing import Final
 
     __version__: str
+    from ramtek_emu.configuration import FAMILY as FAMILY
     from ramtek_emu.configuration import GMR_9300 as GMR_9300
     from ramtek_emu.configuration import JPL_9460 as JPL_9460
     from ramtek_emu.configuration import NCAR_9460 as NCAR_9460
@@ -73,6 +74,7 @@ _HOME: Final = {
     "Configuration": "configuration",
     "ConfigurationError": "errors",
     "EntryFormat": "configuration",
+    "FAMILY": "configuration",
     "GMR_9300": "configuration",
     "HostPort": "host.port",
     "InstructionError": "errors",

@@ -1,4 +1,4 @@
-"""Configuration: the sizes and formats of a display, and the four displays that the sources describe.
+"""Configuration: the sizes and formats of a display, and the displays that the sources describe.
 
 >>> GMR_9300.elements, GMR_9300.lines, GMR_9300.largest_word
 (640, 480, 1023)
@@ -110,14 +110,19 @@ class Configuration:
         return (1 << self.planes) - 1
 
 
-GMR_9300: Final = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
-"""The display of the paper.
+GMR_9300: Final = Configuration(name="GMR_9300", elements=640, lines=480, planes=10, extended=False)
+"""The display of the paper. It takes what a 9300 takes.
 
 Hardware: GM, 640 x 480 words of ten bits, one parallel table of 1024 x 24 bits.
 Assumed: the table takes the word pairs of the 9460, the same family and the same number of entries; no source
 shows a 9300 with a 24-bit table. It has two cursors, as Princeton's.
-Departs: the 9300 had no second operand flag word and no 9460 instructions; this display takes them, so that
-the programs of the whole family run on it. PRINCETON_9300 is the strict one.
+"""
+
+FAMILY: Final = Configuration(name="FAMILY", elements=640, lines=480, planes=10)
+"""The display of the paper, with the second operand flag word and the instructions of the 9400 and 9460.
+
+Departs: no display was built so. It runs the programs of the whole family with one size, ten planes and a
+table of 24 bits.
 """
 
 PRINCETON_9300: Final = Configuration(
@@ -149,13 +154,14 @@ Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as
 """
 
 CONFIGURATIONS: Final = {
-    configuration.name: configuration for configuration in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)
+    configuration.name: configuration
+    for configuration in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460, FAMILY)
 }
-"""The four displays above, by name."""
+"""The displays above, by name."""
 
 
 def configuration_named(name: str) -> Configuration:
-    """One of the four displays by its name, in upper or lower case; ConfigurationError lists all names.
+    """One of the displays by its name, in upper or lower case; ConfigurationError lists all names.
 
     >>> configuration_named("ncar-9460").elements
     1280

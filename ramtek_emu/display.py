@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from os import PathLike
-from typing import Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 
@@ -24,6 +24,16 @@ from ramtek_emu.processor import cursor_executors, drawing_executors, environmen
 from ramtek_emu.processor.processor import Executors, Pauses, Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
+
+
+class Part(Protocol):
+    """A part of a display."""
+
+    def state(self) -> dict[str, Any]:
+        """What the part is, by name."""
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Become as another part was."""
 
 
 class Ramtek9300:
@@ -58,6 +68,41 @@ class Ramtek9300:
             self.processor.current_parameters,
             self.beam,
         )
+
+    def state(self) -> dict[str, dict[str, Any]]:
+        """All that the display is, by part and name: numbers, tuples, lists, dictionaries and arrays.
+
+        The arrays are the memories themselves, so copy what you keep. The words of an incomplete instruction
+        and unread replies belong to a host and are left out, and so are the counts of words and resets.
+        """
+        return {name: part.state() for name, part in self._parts().items()}
+
+    def restore(self, state: dict[str, dict[str, Any]]) -> None:
+        """Become as a display of the same configuration was; drop pending words and replies."""
+        self.decoder.clear()
+        for name, part in self._parts().items():
+            part.restore(state[name])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        beside = self.resets, self.words_received, self.decoder, self.processor.replies
+        return type(self), (self.configuration,), (self.state(), beside)
+
+    def __setstate__(self, saved: tuple[Any, ...]) -> None:
+        state, beside = saved
+        self.restore(state)
+        self.resets, self.words_received, self.decoder, self.processor.replies = beside
+
+    def _parts(self) -> dict[str, Part]:
+        """The parts that have a state; the beam paints the monitor image, so it comes first."""
+        timed: dict[str, Part] = {} if self.beam is None else {"beam": self.beam, "scan_out": self.scan_out}
+        return {
+            "frame_buffer": self.frame_buffer,
+            "lookup_table": self.lookup_table,
+            "parameters": self.processor.parameters,
+            "processor": self.processor,
+            "cursors": self.cursors,
+            **timed,
+        }
 
     def send(self, words: Words) -> None:
         """Send 16-bit words; instructions may be cut anywhere. WordsError if they are not 16-bit words."""

@@ -29,6 +29,7 @@ from ramtek_emu.checks import (
     is_whole,
     whole_numbers,
 )
+from ramtek_emu.drawing.vectors import points
 from ramtek_emu.errors import InstructionError, WordsError
 from ramtek_emu.instruction_set.instruction import (
     MOST_BYTES,
@@ -39,6 +40,7 @@ from ramtek_emu.instruction_set.instruction import (
     normal,
 )
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, Flags
+from ramtek_emu.memory.scan_orders import Window
 
 
 def concatenate(*parts: Words) -> Words:
@@ -157,50 +159,62 @@ def fill(element: int, line: int, word: int | None = None) -> Words:
     return encode(normal("FILL", operands, np.zeros(1, np.uint16)))
 
 
-def write_vectors(
-    vertices: object,
-    word: int | None = None,
-    start: Sequence[int] | None = None,
-    window: Sequence[int] | None = None,
-) -> Words:
+def write_vectors(vertices: object, word: int | None = None, start: Sequence[int] | None = None) -> Words:
     """WVL: draw the lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
 
     Vertices that do not fit in one instruction continue in the next. The word stays set as the foreground.
-    Lines are drawn with the texture, and are clipped at the write window, never at the window of images and
-    text. If other programs drew before, give `window` (left, top, right, bottom): it sets a texture without
-    gaps and the write window, which stays set and also clips images and text. Only the 9400 and the 9460 have
-    a texture and a write window. The mask is never set. WordsError if the vertices are not such an array.
+    Lines are clipped at the memory, never at the window of images and text. The 9400 and the 9460 draw with
+    the texture, and clip at the write window: if other programs drew before, set both with `set_parameters`.
+    The mask is never set. WordsError if the vertices are not such an array.
     """
     words = checked_places(vertices, "vertices", "vertex", ("element", "line"))
     if start is None:
         start = words[0].tolist()
         words = words[1:] if len(words) > 1 else words
-    return in_instructions("WVL", words, {**line_operands(word, window), "start": start})
-
-
-def write_segments(segments: object, word: int | None = None, window: Sequence[int] | None = None) -> Words:
-    """WVU: draw unlinked lines from (n, 4) segments (element, line of the start; element, line of the end).
-
-    Segments that do not fit in one instruction continue in the next. The word and the window stay set, as
-    after `write_vectors`. WordsError if the segments are not such an array.
-    """
-    words = checked_places(segments, "segments", "segment", ("element", "line", "element", "line"))
-    return in_instructions("WVU", words, line_operands(word, window))
-
-
-def line_operands(word: int | None, window: Sequence[int] | None) -> dict[str, OperandValue | None]:
-    """The operands that lines need; with a window, the texture has no gaps."""
-    return {"foreground": word, "write_window": window, "texture": None if window is None else (0xFFFF, 0)}
-
-
-def in_instructions(name: str, rows: Words, operands: dict[str, OperandValue | None]) -> Words:
-    """The instructions for rows of coordinates; the first instruction sets the operands."""
-    most = MOST_BYTES // (2 * rows.shape[1])
+    operands: dict[str, OperandValue | None] = {"foreground": word, "start": start}
+    most = MOST_BYTES // 4
     parts = []
-    for first in range(0, len(rows), most):
-        parts.append(encode(normal(name, operands, rows[first : first + most].reshape(-1))))
+    for first in range(0, len(words), most):
+        parts.append(encode(normal("WVL", operands, words[first : first + most].reshape(-1))))
         operands = {}
     return concatenate(*parts)
+
+
+MEMORY: Final = Window(0, 0, 4095, 4095)
+"""The largest memory."""
+
+
+def write_segments(segments: object, word: int | None = None) -> Words:
+    """WR: draw unlinked lines from (n, 4) segments (element, line of the start; element, line of the end).
+
+    A 9300 has an instruction for linked lines alone, and a thousand instructions take long. So the pixels
+    that WVL gives the lines are sent as a raster of one bit a pixel, in the box around them. Elements and
+    lines above 4095 are left out. The word, the window and the scan order stay set. WordsError if the
+    segments are not such an array.
+    """
+    words = checked_places(segments, "segments", "segment", ("element", "line", "element", "line"))
+    ends = words.view(np.int16).astype(np.int64).reshape(-1, 2)
+    box = Window(*ends.min(axis=0).tolist(), *ends.max(axis=0).tolist()).intersection(MEMORY)
+    if box.is_empty:
+        return NO_WORDS
+    dots = np.zeros((box.height, box.width), np.bool_)
+    for elements, lines, _, _ in points(ends[::2], ends[1::2], box):
+        dots[lines - box.top, elements - box.left] = True
+    operands: dict[str, OperandValue | None] = {"foreground": word, "scan_order": 0}
+    most = MOST_BYTES * 8 // box.width
+    parts = []
+    for first in range(0, len(dots), most):
+        strip = dots[first : first + most]
+        top = box.top + first
+        operands["window"] = (box.left, top, box.right, top + len(strip) - 1)
+        data = np.packbits(strip).tobytes()
+        parts.append(encode(normal("WR", operands, packed(data), len(data), Flags.ADDITIVE)))
+    return concatenate(*parts)
+
+
+def packed(data: bytes) -> Words:
+    """Bytes as words, the first byte high; a byte of 0 pads the last word."""
+    return np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
 
 
 def checked_places(values: object, things: str, thing: str, columns: tuple[str, ...]) -> Words:
@@ -251,8 +265,7 @@ def write_text(
         "spacing": (0, 0),
         "scale": (down - 1) << 8 | (across - 1),
     }
-    packed = np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
-    return encode(normal("WT", operands, packed, len(data), Flags.ADDITIVE if transparent else 0))
+    return encode(normal("WT", operands, packed(data), len(data), Flags.ADDITIVE if transparent else 0))
 
 
 def write_cursor(

@@ -289,7 +289,7 @@ def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int
 
 
 def segments(strokes: Floats, word: int, area: Area) -> Item:
-    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area, by WVU of later models."""
+    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area."""
     pixels = pixels_inside(strokes, area)
     return Item(area, instructions.write_segments(pixels, word).tobytes() if len(pixels) else b"")
 

@@ -14,6 +14,7 @@ from ramtek_emu.commands.displays import (
     read_stream,
     refuse_outputs,
     start_option,
+    table_option,
     tell,
 )
 
@@ -60,6 +61,7 @@ Examples:
 )
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
 @configuration_option
+@table_option
 @start_option
 def inspect(
     stream: str,
@@ -70,6 +72,7 @@ def inspect(
     as_json: bool,
     force: bool,
     configuration: str | None,
+    table: str | None,
     start: str | None,
 ) -> None:
     """Stop a display at any instruction of STREAM, a file of 16-bit words, low byte first; - is stdin.
@@ -79,7 +82,7 @@ def inspect(
     if who is not None and who_entry is not None:
         raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
     refuse_outputs(force, pictures=[output])
-    display = display_asked_for(configuration, start)
+    display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.inspection.replay import Replay
 
@@ -117,16 +120,16 @@ def refuse_outside(thing: str, value: int | None, most: int, place: str = "") ->
 
 def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until: int, as_json: bool) -> None:
     """Print the instructions that wrote a word or an entry, the newest first."""
-    from ramtek_emu.inspection.histories import finished, writes_to_entry, writes_to_pixel
+    from ramtek_emu.inspection.histories import EntryRange, finished, history_of
+    from ramtek_emu.memory.scan_orders import Window
 
+    selection: Window | EntryRange
     if who is not None:
         line, element = who
-        writes = finished(writes_to_pixel(replay, line, element, until))
-        thing = f"line {line}, element {element}"
+        selection, thing = Window(element, line, element, line), f"line {line}, element {element}"
     else:
-        writes = finished(writes_to_entry(replay, entry or 0, until))
-        thing = f"entry {entry}"
-    writes.reverse()
+        selection, thing = EntryRange(entry or 0, (entry or 0) + 1), f"entry {entry}"
+    writes = finished(history_of(replay, selection, until))[::-1]
     if as_json:
         rows = (json.dumps(plain_write(replay, write)) for write in writes)
         click.echo("[" + ",\n ".join(rows) + "]")

@@ -90,6 +90,7 @@ def serve(
     snapshot: str | None,
     record: str | None,
     configuration: str | None,
+    table: str | None,
     start: str | None,
     force: bool,
 ) -> None:
@@ -109,7 +110,7 @@ def serve(
             "stdin must be for words or for the joystick, not both; give --joystick a FIFO"
         )
     refuse_outputs(force, record, pictures=[output, snapshot])
-    display = display_asked_for(configuration, start)
+    display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.server import HostSession, TcpServer, UnixServer

@@ -243,6 +243,8 @@ class InspectorPage:
     def _draw_stage(self, runs: list[Run]) -> None:
         session, stage, field = self.session, self.layout.stage, self.layout.field
         state, scan_out = session.state, session.display.scan_out
+        if self._of is not session.display:
+            self._of, self._field_stamp, self._stage_stamp = session.display, None, None
         if state.page:
             table = (session.display.lookup_table.written, scan_out.first_entry)
             chosen = state.selection if isinstance(state.selection, EntryRange) else None
@@ -259,8 +261,6 @@ class InspectorPage:
                 runs.append((0, stage.height))
             return
         marks = self._marked_windows()
-        if self._of is not session.display:
-            self._of, self._field_stamp = session.display, None
         changed = scan_out.lines_changed_since(self._field_stamp)
         if self._field_stamp is None:
             # A page, or the field of another display, was here.

@@ -15,12 +15,13 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection import histories
+from ramtek_emu.inspection.histories import EntryRange as EntryRange
 from ramtek_emu.inspection.histories import Search, Write
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
@@ -49,13 +50,6 @@ SHOWN_OPERANDS: Final = (
     "base_line", "scroll", "display_class", "image_mode",
 )  # fmt: skip
 """The operands in the order of the panel."""
-
-
-class EntryRange(NamedTuple):
-    """A range of entries of the lookup table: the first, and the end after the last."""
-
-    first: int
-    end: int
 
 
 @dataclass(frozen=True)
@@ -360,10 +354,7 @@ class InspectionSession:
             self._change(message="drag a rectangle on the field, or click a pixel or an entry first")
             return
         after, host = self.state.target, self.host
-        if isinstance(selection, EntryRange):
-            search = histories.next_entry_change(self.replay, selection.first, selection.end, after)
-        else:
-            search = histories.next_change(self.replay, selection, after)
+        search = histories.next_change(self.replay, selection, after)
 
         def found(number: int | None) -> None:
             if number is not None:
@@ -391,12 +382,11 @@ class InspectionSession:
         until, what = self.state.target, f"writes of {selection_text(selection)}"
         self._change(writes_until=until)
         if isinstance(selection, EntryRange):
-            if selection.end - selection.first == 1:
-                search = histories.writes_to_entry(self.replay, selection.first, until)
-                self._start(what, search, self._show_writes)
-        elif selection.width == selection.height == 1:
-            search = histories.writes_to_pixel(self.replay, selection.top, selection.left, until)
-            self._start(what, search, self._show_writes)
+            size = selection.end - selection.first
+        else:
+            size = selection.width * selection.height
+        if size == 1:
+            self._start(what, histories.history_of(self.replay, selection, until), self._show_writes)
 
     def _show_writes(self, writes: Sequence[Write]) -> None:
         self.written = frozenset(write.number for write in writes)

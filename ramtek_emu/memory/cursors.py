@@ -17,7 +17,7 @@ other cursors.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -87,30 +87,40 @@ class Cursors:
         visible = sum(cursor.is_visible for cursor in self.all)
         return f"Cursors({len(self.all)}, {visible} visible, TRACK {'on' if self.track else 'off'})"
 
-    def __len__(self) -> int:
-        return len(self.all)
-
     def __getitem__(self, number: int) -> Cursor:
         return self.all[number]
 
     def __contains__(self, number: int) -> bool:
         return 0 <= number < len(self.all)
 
+    def state(self) -> dict[str, Any]:
+        """The cursors, the switches, and the cursors of each tracking device as pairs (device, mask)."""
+        return {
+            "cursors": tuple(dict(vars(cursor)) for cursor in self.all),
+            "track": self.track,
+            "enter_is_pressed": self.enter_is_pressed,
+            "tracking_devices": sorted(self.driven.items()),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Set the cursors and switches of a state."""
+        for cursor, values in zip(self.all, state["cursors"], strict=True):
+            vars(cursor).update(values)
+        self.track, self.enter_is_pressed = state["track"], state["enter_is_pressed"]
+        self.driven = dict(state["tracking_devices"])
+        self.shape_changes += 1
+
     def place(self, number: int, element: int, line: int, state: int) -> None:
         """Move a cursor and set its state, as the host does."""
         cursor = self.all[number]
         cursor.element, cursor.line, cursor.state = element, line, state
 
-    def state_of(self, number: int) -> int:
-        """The state bits of a cursor, with the switches."""
-        cursor = self.all[number]
-        return cursor.state & ~(TRACK | ENTER) | (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
-
     def read_state(self, number: int) -> int:
-        """The state bits as the host reads them; reading clears the ENTER of this cursor."""
-        state = self.state_of(number)
-        self.all[number].enter = False
-        return state
+        """The state bits of a cursor, with the switches, as the host reads them; its ENTER is cleared."""
+        cursor = self.all[number]
+        switches = (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
+        cursor.enter = False
+        return cursor.state & ~(TRACK | ENTER) | switches
 
     def set_shape(self, number: int, rows: Bytes) -> None:
         """Replace up to 32 rows of a cursor's shape; a row is four bytes, the highest bit leftmost."""

@@ -8,8 +8,8 @@ one), the background 0, the mask all ones, the window the whole memory, the scan
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Final
+from dataclasses import dataclass
+from typing import Any, Final
 
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.instruction_set.table import Flags
@@ -79,8 +79,8 @@ class Parameters:
     """Whether lines are counted from the bottom of the screen."""
     font: int = 0
     """The font of text: STANDARD_FONT is the ROM, any other number the loaded characters."""
-    whole_window: Window = field(repr=False)
-    whole_word: int = field(repr=False)
+    whole_window: Window
+    whole_word: int
     """A word with every plane set."""
 
     @classmethod
@@ -96,6 +96,14 @@ class Parameters:
             whole_window=window,
             whole_word=configuration.largest_word,
         )
+
+    def state(self) -> dict[str, Any]:
+        """The values by their names."""
+        return dict(vars(self))
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Set the values of a state."""
+        vars(self).update(state)
 
     def operand(self, name: str) -> tuple[int, ...]:
         """The words of an operand."""
@@ -146,16 +154,14 @@ class Parameters:
         for name, words in operands.items():
             if name in ("window", "start"):
                 continue
-            if name in ("index_1", "index_2", "origin", "write_offset"):
-                setattr(self, name, Point(signed(words[0]), signed(words[1])))
-            elif name == "write_window":
-                self.write_window = Window(*map(signed, words))
+            if len(words) == 1:
+                setattr(self, name, words[0])
             elif name == "conic":
                 self.conic = coefficients(words)
-            elif len(words) == 1:
-                setattr(self, name, words[0])
-            else:
+            elif (kind := type(getattr(self, name))) is tuple:
                 setattr(self, name, words)
+            else:
+                setattr(self, name, kind(*map(signed, words)))
         if "window" in operands:
             left, top, right, bottom = operands["window"]
             element, line = base

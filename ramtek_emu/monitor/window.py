@@ -18,6 +18,7 @@ the window saves the film, too.
 from __future__ import annotations
 
 import os
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -33,6 +34,7 @@ from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Release
 from ramtek_emu.monitor.input_queue import Key as Key
 from ramtek_emu.monitor.input_queue import Pointer as Pointer
 from ramtek_emu.monitor.overlay import PAGES, Overlay
+from ramtek_emu.video.scan_out import next_table
 
 if TYPE_CHECKING:
     from ramtek_emu.films import TimedFilm
@@ -98,8 +100,8 @@ class Monitor:
         self._enter = False
         self._film: TimedFilm | None = None
         """The film that is recorded, or that could not be saved."""
-        self._drops_film = False
-        """Whether the user knows that closing the window drops the film."""
+        self._closes_film = False
+        """Whether the user knows that closing the window saves the film elsewhere."""
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
@@ -117,6 +119,7 @@ class Monitor:
     @display.setter
     def display(self, display: Ramtek9300) -> None:
         display.joystick.move_to(*self._display.joystick.position)
+        display.scan_out.shown_table = self._display.scan_out.shown_table
         self._display = display
         self._glass.forget_shown()
 
@@ -161,14 +164,22 @@ class Monitor:
         self._set_title()
 
     def close(self) -> None:
-        """Close the window without asking. A film is saved, and a message on stderr has its path."""
+        """Close the window without asking. A film is saved, and a message on stderr has its path.
+
+        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files, or
+        else to the home folder.
+        """
         self._glass.close()
-        if self._film is not None:
+        film, self._film = self._film, None
+        if film is None:
+            return
+        for folder in (self.screenshots, Path(tempfile.gettempdir()), Path.home()):
             try:
-                report(self._save_film(self._film))
+                report(self._save_film(film, folder))
+                return
             except RamtekError as refusal:
-                report(f"{refusal}; the film is lost")
-            self._film = None
+                report(str(refusal))
+        report("the film is lost")
 
     def _to_be_shown(self) -> tuple[object, ...]:
         return self.source.stamp, self._glass.stamp, self.overlay.stamp
@@ -228,6 +239,12 @@ class Monitor:
         self._glass.fit = not self._glass.fit
         self.tell("the picture fills the window" if self.fit else "the picture at a whole multiple")
 
+    def turn_table(self) -> None:
+        """Show the words through the next table of grays, or again through the table of the display."""
+        scan_out = self._display.scan_out
+        scan_out.shown_table = next_table(scan_out.shown_table)
+        self.tell(f"the table {scan_out.shown_table}" if scan_out.shown_table else "the display's table")
+
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
         from ramtek_emu.png import save_numbered
@@ -242,25 +259,25 @@ class Monitor:
         from ramtek_emu.films import TimedFilm
 
         self._film = TimedFilm(self.source.field(), time.monotonic())
-        self._drops_film = False
+        self._closes_film = False
         # A program that gets messages would draw this message into the film.
         self.show_message("F3 ends it")
 
     def _tell_of_film(self, film: TimedFilm, reason: str = "") -> None:
         """End and save the film, and show its path. A film that cannot be saved is not lost."""
         try:
-            self.tell(reason + self._save_film(film))
+            self.tell(reason + self._save_film(film, self.screenshots))
         except RamtekError as refusal:
             self.tell(f"{refusal}; F3 tries again")
 
-    def _save_film(self, film: TimedFilm) -> str:
+    def _save_film(self, film: TimedFilm, folder: Path) -> str:
         """End the film, and save it under the next free number; returns a sentence with its path.
 
         Raises OutputError or WriteError.
         """
         from ramtek_emu.writing import write_numbered
 
-        path = write_numbered(film.end(time.monotonic()), self.screenshots, self.file_name, ".apng")
+        path = write_numbered(film.end(time.monotonic()), folder, self.file_name, ".apng")
         self._film = None
         return f"saved {path}, {film.fields:,} {'field' if film.fields == 1 else 'fields'}"
 
@@ -286,12 +303,12 @@ class Monitor:
         """
         if self.on_close is not None and not self.on_close():
             return
-        if self._film is not None and not self._drops_film:
+        if self._film is not None and not self._closes_film:
             try:
-                report(self._save_film(self._film))
+                report(self._save_film(self._film, self.screenshots))
             except RamtekError as refusal:
-                self.tell(f"{refusal}; F3 tries again, and closing again drops the film")
-                self._drops_film = True
+                self.tell(f"{refusal}; F3 tries again, and closing again saves the film elsewhere")
+                self._closes_film = True
                 return
         self.close()
 
@@ -333,6 +350,9 @@ class Monitor:
                 self.ask_to_close()
         elif self.on_key is not None and self.on_key(key):
             return
+        elif key.name == "f2" and self.on_key is None:
+            if not key.repeated:
+                self.turn_table()
         elif key.name == "f12":
             if not key.repeated:
                 self._tell_of_screenshot()

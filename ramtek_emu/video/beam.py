@@ -7,6 +7,8 @@ is **not**: interlace, real time, pauses of the host.
 
 from __future__ import annotations
 
+from typing import Any
+
 from ramtek_emu.timing import Timing
 
 
@@ -21,6 +23,14 @@ class Beam:
 
     def __repr__(self) -> str:
         return f"Beam(field {self.field_number}, line {self.line} of {self.lines_per_field})"
+
+    def state(self) -> dict[str, Any]:
+        """The time since power-on."""
+        return {"nanoseconds": self.nanoseconds}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Set the time of a state."""
+        self.nanoseconds = state["nanoseconds"]
 
     @property
     def lines_done(self) -> int:

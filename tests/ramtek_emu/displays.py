@@ -8,13 +8,13 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from ramtek_emu import Configuration, Ramtek9300, instructions
+from ramtek_emu import FAMILY, Configuration, Ramtek9300, instructions
 from tests.ramtek_emu.strategies import sent_words
 
 
-def sent(*texts: str, configuration: Configuration | None = None) -> Ramtek9300:
-    """A display that was sent these words, in hexadecimal."""
-    display = Ramtek9300() if configuration is None else Ramtek9300(configuration)
+def sent(*texts: str, configuration: Configuration = FAMILY) -> Ramtek9300:
+    """A display that was sent these words, in hexadecimal; FAMILY takes every instruction."""
+    display = Ramtek9300(configuration)
     for text in texts:
         display.send(np.array([int(word, 16) for word in text.split()], np.uint16))
     return display

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu import GMR_9300, Configuration
+from ramtek_emu import FAMILY, Configuration
 from ramtek_emu.instruction_set.disassembler import items
 
 
@@ -19,7 +19,7 @@ def words(text: str) -> NDArray[np.uint16]:
     return np.array([int(word, 16) for word in text.split()], np.uint16)
 
 
-def listing(stream: bytes, configuration: Configuration = GMR_9300) -> list[str]:
+def listing(stream: bytes, configuration: Configuration = FAMILY) -> list[str]:
     """The lines of the listing of a stream."""
     return [line for item in items([stream], configuration) for line in item.lines()]
 

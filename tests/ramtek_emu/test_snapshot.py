@@ -6,6 +6,7 @@ import tracemalloc
 import zlib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,11 +27,11 @@ from ramtek_emu import (
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.png import SIGNATURE, chunk
 from ramtek_emu.snapshot import (
     MOST_TEXT,
     display_of,
     from_plain,
-    listed,
     picture_bytes,
     picture_of,
     snapshot_bytes,
@@ -174,16 +175,26 @@ def test_mutated_snapshots_are_read_or_refused(count: int) -> None:
     [
         ("Software", "snapshot 1", "snapshot 9", "of the format 'ramtek_emu snapshot 1'"),
         ("configuration", '"elements":13', '"elements":14', "must have 14 x 9 words"),
-        ("configuration", '"elements":13', '"elements":99999999', "from -32768 to 65535, not 99999999"),
+        (
+            "configuration",
+            '"elements":13',
+            '"elements":99999999',
+            "a configuration that can be built: elements must be",
+        ),
         ("configuration", '"elements":13', '"elements":-1', "must have a configuration that can be built"),
-        ("configuration", '"planes":10', '"planes":1', "a word of a snapshot must be 0 to 1, not "),
-        ("configuration", '"PAIR_24"', '"PAIR_99"', "must be one of PAIR_24, WORD_12"),
+        (
+            "configuration",
+            '"planes":10',
+            '"planes":1',
+            "a word of a snapshot must be a whole number from 0 to 1, not ",
+        ),
+        ("configuration", '"PAIR_24"', '"PAIR_99"', "entry_format must be an EntryFormat"),
         ("configuration", '"name":"SMALL"', f'"name":"{60 * "a"}"', ""),
         ("configuration", '"name":"SMALL"', f'"name":"{61 * "a"}"', "name of a snapshot must be a name"),
         ("configuration", '"name":"SMALL"', '"name":""', "name of a snapshot must be a name"),
         ("configuration", '"name":"SMALL"', '"name":"\\n"', "name of a snapshot must be a name"),
         ("configuration", '"name":"SMALL"', '"name":"\\u00e9"', "name of a snapshot must be a name"),
-        ("configuration", '"name"', '"nome"', "must be an object of name"),
+        ("configuration", '"lines"', '"limes"', "must be an object of name"),
         ("parameters", '"scan_order":0', '"scan_order":"0"', "parameters.scan_order of a snapshot"),
         ("parameters", '"scan_order":0', '"scan_order":1e9', "parameters.scan_order of a snapshot"),
         ("parameters", '"scan_order":0', '"scan_order":true', "parameters.scan_order of a snapshot"),
@@ -196,7 +207,7 @@ def test_mutated_snapshots_are_read_or_refused(count: int) -> None:
         ("cursors", '"shape":"', '"shape":"!', "bytes in base64"),
         ("cursors", '"shape":"', f'"shape":"{9999 * "a"}', f"not '{59 * 'a'}...; take a new one"),
         ("lookup table", '"address":0', '"address":2047', ""),
-        ("lookup table", '"address":0', '"address":2048', "address of a snapshot"),
+        ("lookup table", '"address":0', '"address":65536', "table_address of a snapshot"),
         ("processor", '"illegal":false', '"illegal":null', "illegal of a snapshot must be true or false"),
     ],
 )
@@ -215,43 +226,35 @@ def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, ne
 
 
 @pytest.mark.parametrize(
-    ("names", "low", "high"),
+    ("pattern", "name", "low", "high"),
     [
-        ("conic", -(2**31), 2**32 - 1),
-        ("zoom", 1, 16),
-        ("nanoseconds illegal_words named_only", 0, 2**62),
-        ("line", -(2**15), 2**30),
-        ("blink_fields", 1, 2**30),
-        ("blanked_lines", 0, 2**16),
-        ("instruction word pixel", 0, 2**30),
-        ("address", 0, 2**16 - 1),
-        ("another", -(2**15), 2**16 - 1),
+        (0, "conic", -(2**31), 2**32 - 1),
+        (0, "zoom", 1, 16),
+        *[
+            (0, name, 0, 2**62)
+            for name in ("nanoseconds", "illegal_words", "without_effect", "lines_painted")
+        ],
+        (0, "another", -(2**15), 2**16 - 1),
+        (Point(0, 0), "start", -(2**15), 2**15 - 1),
     ],
 )
-def test_every_number_of_a_state_has_its_limits(names: str, low: int, high: int) -> None:
-    for place in (
-        form.format(name) for name in names.split() for form in ("{}", "display.{}", "display.{}[3]")
-    ):
-        for value in (low, low + 1, high - 1, high):
-            assert from_plain(0, value, place) == value
-        for value in (low - 1, high + 1):
-            with pytest.raises(SnapshotError, match=f"must be a whole number from {low} to {high}, not"):
-                from_plain(0, value, place)
+def test_every_number_of_a_state_has_its_limits(pattern: Any, name: str, low: int, high: int) -> None:
+    def read(number: int) -> int:
+        if isinstance(pattern, tuple):
+            return int(from_plain(pattern, [1, number], f"parameters.{name}")[1])
+        return int(from_plain(pattern, number, f"parameters.{name}[3]"))
+
+    for value in (low, high):
+        assert read(value) == value
+    for value in (low - 1, high + 1):
+        with pytest.raises(SnapshotError, match=f"must be a whole number from {low} to {high}, not"):
+            read(value)
 
 
-def test_a_place_has_numbers_of_16_bits_and_a_list_is_no_longer_than_it_may_be() -> None:
-    for value in (-(2**15), 2**15 - 1):
-        assert from_plain(Point(0, 0), [value, 1], "start") == (value, 1)
-    for value in (-(2**15) - 1, 2**15):
-        with pytest.raises(SnapshotError):
-            from_plain(Point(0, 0), [1, value], "start")
-    assert listed((0, 0), [[1, 2], [3, 4]], "driven", 2) == [(1, 2), (3, 4)]
-    with pytest.raises(SnapshotError, match="driven of a snapshot must be a list of at most 1, not"):
-        listed((0, 0), [[1, 2], [3, 4]], "driven", 1)
-
-
-def chunk(kind: bytes, content: bytes) -> bytes:
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+def test_a_list_is_no_longer_than_it_may_be() -> None:
+    assert from_plain([(0, 0)], [[1, 2]] * 256, "cursors.tracking_devices") == [(1, 2)] * 256
+    with pytest.raises(SnapshotError, match="tracking_devices of a snapshot must be a list of at most 256, "):
+        from_plain([(0, 0)], [[1, 2]] * 257, "cursors.tracking_devices")
 
 
 def sized(elements: int, lines: int, depth: int = 16, color: int = 0, interlaced: int = 0) -> bytes:
@@ -259,7 +262,7 @@ def sized(elements: int, lines: int, depth: int = 16, color: int = 0, interlaced
 
 
 def hostile(*chunks: bytes, header: bytes = sized(13, 9)) -> bytes:
-    return b"\x89PNG\r\n\x1a\n" + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
+    return SIGNATURE + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
 
 
 def picture(elements: int, lines: int, *chunks: bytes) -> bytes:
@@ -276,9 +279,9 @@ TIME = chunk(b"tIME", b"")
     [
         (b"", "begin as a PNG file does"),
         (b"GIF89a", "begin as a PNG file does"),
-        (SNAPSHOT[:-5], "have whole chunks"),
-        (SNAPSHOT[:40], "have whole chunks"),
-        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksum"),
+        (SNAPSHOT[:-5], "whole chunks"),
+        (SNAPSHOT[:40], "whole chunks"),
+        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksums"),
         (hostile(header=sized(1 << 31, 1)), "1 to 4096 elements and lines"),
         (picture(4097, 1), "1 to 4096 elements and lines"),
         (picture(1, 4097), "1 to 4096 elements and lines"),
@@ -305,7 +308,7 @@ def test_a_hostile_file_is_refused_by_one_sentence(data: bytes, part: str) -> No
     with pytest.raises(SnapshotError) as refusal:
         picture_of(data)
     assert part in str(refusal.value)
-    assert str(refusal.value).endswith("take a new one with --snapshot")
+    assert str(refusal.value).endswith("with --snapshot")
 
 
 def test_pixels_that_are_too_many_take_no_memory() -> None:

@@ -95,7 +95,7 @@ def test_a_reply_comes_before_the_next_word_is_sent_and_dribbled_bytes_are_words
 def test_only_replies_are_on_stdout_and_the_rest_is_said_on_stderr(
     sent: str, replies: bytes, said: list[str]
 ) -> None:
-    answered = run("serve", "--stdio", data=stream(words(sent)))
+    answered = run("serve", "--stdio", "--configuration", "family", data=stream(words(sent)))
     assert (answered.returncode, answered.stdout) == (0, replies)
     assert answered.stderr.decode().splitlines() == said
 

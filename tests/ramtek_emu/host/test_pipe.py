@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, Ramtek9300, instructions
+from ramtek_emu import FAMILY, Ramtek9300, instructions
 from ramtek_emu.arrays import Colors
 from ramtek_emu.films import write_film
 from ramtek_emu.host.pipe import (
@@ -95,7 +95,7 @@ def in_pieces(data: bytes, cuts: list[int]) -> Callable[[int], bytes]:
 
 def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
     """The pieces that a paced reader returns for a stream in pieces."""
-    read = PacedReader(in_pieces(data, cuts), rate, GMR_9300, clock, clock.sleep)
+    read = PacedReader(in_pieces(data, cuts), rate, FAMILY, clock, clock.sleep)
     read_pieces = []
     while piece := read(1 << 16):
         read_pieces.append(piece)
@@ -136,7 +136,7 @@ def test_a_late_load_does_not_hurry_the_next_loads() -> None:
         clock.now += 3.0
         return data.pop(0) if data else b""
 
-    read = PacedReader(slow_read, 1, GMR_9300, clock, clock.sleep)
+    read = PacedReader(slow_read, 1, FAMILY, clock, clock.sleep)
     while read(1 << 16):
         pass
     assert clock.slept == []

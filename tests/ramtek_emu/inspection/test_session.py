@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import session as module
-from ramtek_emu.inspection.histories import finished, next_change, writes_to_entry, writes_to_pixel
+from ramtek_emu.inspection.histories import finished, history_of, next_change
 from ramtek_emu.inspection.session import (
     EntryRange,
     InspectionSession,
@@ -81,17 +81,18 @@ def test_the_histories_and_the_next_change_are_those_of_the_stream(
         for place in places:
             session.go(place)
             line, element = place % 9, place % 13
-            session.select(Window(element, line, element, line))
+            pixel, entry = Window(element, line, element, line), EntryRange(place, place + 1)
+            session.select(pixel)
             at_rest(session)
             number = session.state.number
-            history = finished(writes_to_pixel(session.replay, line, element, number))
+            history = finished(history_of(session.replay, pixel, number))
             assert session.state.writes == tuple(reversed(history))
-            change = finished(next_change(session.replay, Window(element, line, element, line), number))
+            change = finished(next_change(session.replay, pixel, number))
             session.next_change()
             assert at_rest(session).state.number == (number if change is None else change)
-            session.select(EntryRange(place, place + 1))
+            session.select(entry)
             at_rest(session)
-            loads = finished(writes_to_entry(session.replay, place, session.state.number))
+            loads = finished(history_of(session.replay, entry, session.state.number))
             assert session.state.writes == tuple(reversed(loads))
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, InstructionError
+from ramtek_emu import FAMILY, PRINCETON_9300, InstructionError
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.decoder import MOST_WORDS, Decoder
 from ramtek_emu.instruction_set.disassembler import items
@@ -34,7 +34,7 @@ from tests.tables import call, refused
 
 
 def decoded(pieces: list[np.ndarray[tuple[int], np.dtype[np.uint16]]]) -> tuple[list[list[int]], Decoder]:
-    decoder = Decoder()
+    decoder = Decoder(FAMILY)
     encoded = [encode(instruction).tolist() for piece in pieces for instruction in decoder.feed(piece)]
     return encoded, decoder
 
@@ -57,7 +57,7 @@ def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) 
 
 @given(st.integers(0, 2**32 - 1))
 def test_pending_words_are_never_more_than_one_instruction(seed: int) -> None:
-    decoder = Decoder()
+    decoder = Decoder(FAMILY)
     for word in np.random.default_rng(seed).integers(0, 1 << 16, (2000, 1), np.uint16):
         list(decoder.feed(word))
         assert decoder.pending_words < MOST_WORDS
@@ -65,7 +65,7 @@ def test_pending_words_are_never_more_than_one_instruction(seed: int) -> None:
 
 def test_data_are_views_of_the_words_sent() -> None:
     stream = np.array([0x0A01, 6, 1, 2, 3], np.uint16)
-    (instruction,) = Decoder().feed(stream)
+    (instruction,) = Decoder(FAMILY).feed(stream)
     assert np.shares_memory(instruction.data, stream)
 
 
@@ -86,14 +86,14 @@ def test_conics_of_six_and_twelve_words_are_distinguished(
 def test_six_coefficients_are_taken_where_twelve_make_no_sense() -> None:
     six = [0x0F03, 0x9000, 1, 1, 0, 10, 0, 0, 100, 100, 4, 90, 110]
     twelve = [0x0F03, 0x9000, 0, 1, 0, 1, 0, 0, 0, 10, 0, 0, 0, 0, 100, 100, 4, 90, 110]
-    instructions = list(Decoder().feed(np.array([*six, *twelve], np.uint16)))
+    instructions = list(Decoder(FAMILY).feed(np.array([*six, *twelve], np.uint16)))
     assert [instruction.data.tolist() for instruction in instructions] == [[90, 110], [90, 110]]
     assert [instruction.operands["start"] for instruction in instructions] == [(100, 100)] * 2
 
 
 @given(streams(300), st.booleans())
 def test_rows_of_illegal_words_equal_single_illegal_words(stream: list[int], extended: bool) -> None:
-    configuration = GMR_9300 if extended else PRINCETON_9300
+    configuration = FAMILY if extended else PRINCETON_9300
     single, rows = Decoder(configuration), Decoder(configuration)
     words = np.array(stream, np.uint16)
     one_by_one = [encode(instruction).tolist() for instruction in single.feed(words)]
@@ -105,7 +105,7 @@ def test_rows_of_illegal_words_equal_single_illegal_words(stream: list[int], ext
 def test_an_instruction_known_by_name_only_is_consumed_whole() -> None:
     # WPP with a foreground and data, a keyboard instruction, a display list's.
     stream = np.array([0x3603, 0x0002, 7, 3, 1, 2, 0x1800, 0x4100, 0x0700], np.uint16)
-    names = [instruction.format.name for instruction in Decoder().feed(stream)]
+    names = [instruction.format.name for instruction in Decoder(FAMILY).feed(stream)]
     assert names == ["WPP", "WKB", "CDL", "NOP"]
     strict = [instruction.format.name for instruction in Decoder(PRINCETON_9300).feed(stream)]
     assert strict == ["???"] * 8 + ["NOP"]
@@ -115,14 +115,14 @@ def test_a_9300_knows_no_second_operand_flag_word() -> None:
     stream = np.array([0x0804, 0x0001, 0x0700], np.uint16)
     strict = [instruction.format for instruction in Decoder(PRINCETON_9300).feed(stream)]
     assert strict[0] is ILLEGAL
-    (instruction,) = Decoder().feed(stream)
+    (instruction,) = Decoder(FAMILY).feed(stream)
     assert instruction.operands == {"read_mask": (0x0700,)}
 
 
 @given(streams())
 def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) -> None:
-    for instruction in Decoder().feed(np.array(stream, np.uint16)):
-        (again,) = Decoder().feed(encode(instruction))
+    for instruction in Decoder(FAMILY).feed(np.array(stream, np.uint16)):
+        (again,) = Decoder(FAMILY).feed(encode(instruction))
         assert again == instruction
         assert hash(again) == hash(instruction)
         assert str(again) == str(instruction)
@@ -161,7 +161,7 @@ def test_an_unknown_operand_is_answered_with_the_nearest(name: str, advice: str)
 
 def test_a_listing_names_operands_and_flags() -> None:
     assert str(normal("SET", {"mask": 15, "window": (0, 0, 9, 9)})) == "SET  mask 15; window 0, 0, 9, 9"
-    (text,) = Decoder().feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
+    (text,) = Decoder(FAMILY).feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
     assert str(text) == "WT   BK; window 0, 0, 32, 32; 3 bytes"
     assert text.data_bytes() == b"004"
     assert repr(text) == f"Instruction({str(text)!r})"
@@ -178,7 +178,7 @@ def test_a_listing_does_not_depend_on_how_the_stream_was_cut(stream: list[int], 
     whole = np.array(stream, "<u2").tobytes()
     pieces = [part.astype("<u2").tobytes() for part in cuts(stream, places)]
     pieces = [half for piece in pieces for half in (piece[:1], piece[1:])]
-    assert [line for item in items(pieces) for line in item.lines()] == listing(whole)
+    assert [line for item in items(pieces, FAMILY) for line in item.lines()] == listing(whole)
 
 
 @pytest.mark.parametrize("number", range(len(RECORDED)))

@@ -2,11 +2,12 @@ from __future__ import annotations
 
 from itertools import combinations
 
+import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu import FAMILY, Ramtek9300, instructions
 from ramtek_emu.instruction_set.table import OPERANDS, Flags
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursor
@@ -64,7 +65,7 @@ def test_a_window_moves_the_operating_point_to_where_its_scan_starts(
     base = parameters.base(addressing)
     words = tuple(number & 0xFFFF for number in window)
     parameters.take({"window": words, "scan_order": (code,)}, addressing)
-    assert parameters.window == window.moved(*base)
+    assert parameters.window == tuple(np.add(window, [*base, *base]))
     assert parameters.start == reference.corner(parameters.window, code)
     parameters.take({"window": words, "start": (1, 2)}, 0)
     assert parameters.start == (1, 2)
@@ -81,7 +82,7 @@ def test_every_operand_is_read_as_the_words_that_set_it(name: str) -> None:
 
 
 def test_track_stays_on_and_enter_is_reported_once() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     display.joystick.move_to(320, 200)
     display.joystick.track = True
     display.joystick.press_enter()
@@ -115,7 +116,7 @@ def test_reset_clears_an_unread_enter_and_leaves_the_cursors() -> None:
 
 
 def test_the_joystick_stays_on_the_screen_and_moves_its_cursors() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     display.joystick.move_to(10_000, -5)
     assert display.joystick.position == (639, 0)
     display.joystick.move_by(-9, 7)
@@ -146,7 +147,6 @@ def test_windows_meet_where_pixels_are_in_both(one: Window, other: Window, point
     assert one.is_empty is (not places(one))
     assert one.holds(point) is (point in places(one))
     assert (one.width * one.height) == len(places(one))
-    assert places(one.moved(2, -1)) == {(element + 2, line - 1) for element, line in places(one)}
 
 
 @given(windows(), scan_codes, points, st.integers(0, 400))
@@ -156,9 +156,6 @@ def test_a_run_steps_along_the_scan(window: Window, code: int, start: Point, cou
     assert [order.after(window, start, number) for number in range(1, count + 1)] == places[1:]
     corner = order.corner(window)
     assert [order.stepped(corner, *order.steps(window, Point(*place))) for place in places] == places
-    before = order.words_before(window, start)
-    assert all(reference.inside(place, window) for place in places[before:] if count)
-    assert not 0 < before <= count or not reference.inside(places[0], window)
 
 
 @given(windows(), scan_codes, points, st.integers(1, 400))

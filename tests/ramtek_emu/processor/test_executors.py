@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, ReplyError, instructions
+from ramtek_emu import FAMILY, GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, ReplyError, instructions
 from ramtek_emu.instruction_set.instruction import normal
 from ramtek_emu.instruction_set.table import FORMATS, OPERANDS, Flags, InstructionFormat
 from ramtek_emu.memory.character_rom import characters
@@ -153,7 +153,7 @@ def test_recorded_rrr_draws_its_figure_and_its_letters() -> None:
 
 
 def test_a_circle_that_was_drawn_is_filled_from_its_center() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     # The disabled code of the weather driver: circle, then fill until the foreground.
     display.send(sent_words([0x6D0B, 0x0002, 9, 6, 300, 200, 50, 0x3A0D, 0x0001, 0xFF, 2, 0]))
     lines, elements = np.ogrid[:480, :640]
@@ -177,7 +177,7 @@ def test_a_conic_comes_as_pairs_of_words_or_as_single_ones() -> None:
 
 
 def test_a_loaded_character_takes_the_place_of_its_code() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     rows = [0x80, 0x40, 0x20, 0x10, 0x08, 0x04, 0x02, 0x01, 0xFF, 0x00, 0xAA, 0x55]
     display.send(sent_words([0x1541] + [rows[row] << 8 | rows[row + 1] for row in range(0, 12, 2)]))
     # Cells of 8 x 12, at (20, 30).
@@ -222,7 +222,7 @@ def test_lines_points_and_circles_leave_the_operating_point_at_the_last(
 
 @given(st.lists(st.sampled_from(list(OPERANDS)), unique=True), st.integers(0, 0x7FFF))
 def test_parameters_are_read_as_they_were_set(chosen: list[str], seed: int) -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     operands = {
         name: [(seed + 77 * place) & 0x7FFF for place in range(OPERANDS[name].words)] for name in chosen
     }
@@ -240,7 +240,7 @@ def test_parameters_are_read_as_they_were_set(chosen: list[str], seed: int) -> N
 
 
 def test_saved_environments_come_back_in_reverse() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     display.send(sent_words([0x0802, 2, 5, 0x1300, 0x0802, 2, 6, 0x2600, 0x0101, 0x1300, 0x0802, 2, 7]))
     assert display.processor.parameters.foreground == 7
     display.send(sent_words([0x1400]))
@@ -254,7 +254,7 @@ def test_saved_environments_come_back_in_reverse() -> None:
 
 
 def test_environments_beyond_the_most_are_flagged_and_not_saved() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     display.send(np.full(16, 0x1300, np.uint16))
     assert len(display.processor.saved) == 16
     assert Status.ILLEGAL not in display.status
@@ -266,7 +266,7 @@ def test_environments_beyond_the_most_are_flagged_and_not_saved() -> None:
 
 
 def test_zoom_and_video_origin_have_the_lowest_bits_of_their_words() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     for word, zoom in [(0, (1, 1)), (0x0102, (3, 2)), (0x0F0F, (16, 16)), (0xF3F5, (6, 4))]:
         display.send(sent_words([0x2600, word]))
         assert display.processor.parameters.zoom == zoom
@@ -276,7 +276,7 @@ def test_zoom_and_video_origin_have_the_lowest_bits_of_their_words() -> None:
 
 
 def test_the_error_status_is_read_and_cleared() -> None:
-    display = Ramtek9300()
+    display = Ramtek9300(FAMILY)
     display.send(sent_words([0xFFFF, 0x2500, 0x2500]))
     assert display.receive(2).tolist() == [Status.ILLEGAL, 0]
     assert display.status == Status.READY

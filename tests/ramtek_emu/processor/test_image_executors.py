@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import Configuration, Ramtek9300, instructions
+from ramtek_emu import FAMILY, Configuration, Ramtek9300, instructions
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import box, read, sent
@@ -203,7 +203,7 @@ def test_images_of_any_shape_arrive_whole(lines: int, elements: int, left: int) 
 
 
 def test_a_run_of_bytes_goes_on_with_the_next_pair() -> None:
-    whole, cut = Ramtek9300(), Ramtek9300()
+    whole, cut = Ramtek9300(FAMILY), Ramtek9300(FAMILY)
     head = [0x0A07, 0x0040, 0x0020, 5, 5, 9, 99, 1]
     data = packed(bytes(range(1, 61)), False)
     whole.send(sent_words([*head, 60, *data]))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import (
+    FAMILY,
     GMR_9300,
     JPL_9460,
     NCAR_9460,
@@ -119,7 +120,9 @@ def do(display: Ramtek9300, name: str, value: Any) -> None:
             display.send(np.array([0x0300, address & 0x7FF, 2 * count, *data], np.uint16))
         else:
             first = max(0, address // 2)
-            display.lookup_table.write(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+            display.send(
+                instructions.load_entries(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+            )
     elif name == "write words":
         (line, element), word = value
         word &= display.configuration.largest_word
@@ -285,7 +288,7 @@ def test_a_cursor_is_dark_on_a_light_picture_and_clipped_at_the_edges() -> None:
     assert np.count_nonzero(display.field()[..., 0] == 0) == 12
 
 
-TIMED = replace(GMR_9300, timing=Timing())
+TIMED = replace(FAMILY, timing=Timing())
 
 
 def colors(display: Ramtek9300) -> list[int]:
