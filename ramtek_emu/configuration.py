@@ -7,11 +7,11 @@
 from __future__ import annotations
 
 import difflib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
-from operator import index
 from typing import Final
 
+from ramtek_emu.checks import checked_number
 from ramtek_emu.errors import ConfigurationError
 from ramtek_emu.timing import Timing
 
@@ -24,22 +24,11 @@ class EntryFormat(Enum):
     WORD_12 = "one word an entry: red << 8 | green << 4 | blue, four bits each"
     """Hardware: LIN, BTL."""
 
-    def __repr__(self) -> str:
-        return f"EntryFormat.{self.name}"
 
-
-SIZES: Final = (
-    "elements", "lines", "planes", "visible_elements", "visible_lines", "entries", "cursors",
-)  # fmt: skip
-"""The fields of a configuration that are whole numbers."""
-KINDS: Final[dict[str, tuple[tuple[type, ...], str]]] = {
-    "name": ((str,), "a str"),
-    "entry_format": ((EntryFormat,), "an EntryFormat"),
-    "extended": ((bool,), "True or False"),
-    "monochrome": ((bool,), "True or False"),
-    "timing": ((Timing, type(None)), "a Timing or None"),
-}
-"""The types of the other fields, and the words for them in errors."""
+KINDS: Final = {
+    "name": str, "entry_format": EntryFormat, "extended": bool, "monochrome": bool, "timing": Timing | None,
+}  # fmt: skip
+"""The types of the fields of a configuration that are no whole numbers."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,35 +52,24 @@ class Configuration:
     """How long everything takes; None means that no time passes."""
 
     def __post_init__(self) -> None:
-        for name, (kinds, phrase) in KINDS.items():
-            if not isinstance(getattr(self, name), kinds):
+        for name, kind in KINDS.items():
+            if not isinstance(getattr(self, name), kind):
+                words = getattr(kind, "__name__", "Timing or None")
                 raise ConfigurationError(
-                    f"{name} must be {phrase}, not {getattr(self, name)!r} "
-                    f"(configuration {self.name!r}); choose another value"
+                    f"{name} of a display must be {words}, not {getattr(self, name)!r}; choose another value"
                 )
-        for name in SIZES:
-            # Sizes may be numbers of numpy.
-            value = getattr(self, name)
-            if not isinstance(value, bool) and hasattr(value, "__index__"):
-                object.__setattr__(self, name, index(value))
-        limits = {
-            "elements": (self.elements, 1, 4096),
-            "lines": (self.lines, 1, 4096),
-            "planes": (self.planes, 1, 16),
-            "visible_elements": (self.shown_elements, 1, self.elements),
-            "visible_lines": (self.shown_lines, 1, self.lines),
-            "cursors": (self.cursors, 0, 8),
-        }
-        for name, (value, least, most) in limits.items():
-            if type(value) is not int or not least <= value <= most:
-                raise ConfigurationError(
-                    f"{name} must be a whole number from {least} to {most}, not {value!r} "
-                    f"(configuration {self.name!r}); choose another size"
-                )
-        if type(self.entries) is not int or self.entries not in (256, 512, 1024, 2048, 4096):
+        limits = {"elements": (1, 4096), "lines": (1, 4096), "planes": (1, 16), "cursors": (0, 8)}
+        limits |= {"visible_elements": (1, self.elements), "visible_lines": (1, self.lines)}
+        limits["entries"] = (256, 4096)
+        for name, range_ in limits.items():
+            size = getattr(self, name)
+            if size is not None or name not in ("visible_elements", "visible_lines"):
+                thing = f"{name} of {self.name}"
+                size = checked_number(size, thing, *range_, "choose another size", ConfigurationError)
+                object.__setattr__(self, name, size)
+        if self.entries & (self.entries - 1):
             raise ConfigurationError(
-                f"entries must be 256, 512, 1024, 2048 or 4096, not {self.entries!r} "
-                f"(configuration {self.name!r}); choose one of them"
+                f"entries of {self.name} must be a power of 2, not {self.entries}; choose another size"
             )
 
     @property
@@ -136,6 +114,7 @@ PRINCETON_9300: Final = Configuration(
 """The RM-9300 of Princeton University.
 
 Hardware: LIN and PRG, 640 x 512 memory, 1024 entries of 12 bits, words of ten bits (cmap 3), cursors 0 and 1.
+Its monitor was black and white (PRG introdoc); `princeton-9300-monochrome` is this display with such a one.
 Assumed: all 640 elements are shown; the programs kept to 620, probably because the monitor cut the rest.
 """
 
@@ -160,30 +139,24 @@ CONFIGURATIONS: Final = {
 """The displays above, by name."""
 
 
-def configuration_named(name: str) -> Configuration:
-    """One of the displays by its name, in upper or lower case; ConfigurationError lists all names.
+def checked_configuration(name: Configuration | str) -> Configuration:
+    """One of the displays by its name, in upper or lower case; a configuration is returned as it is.
 
-    >>> configuration_named("ncar-9460").elements
-    1280
+    A name with -monochrome after it is the display with a black-and-white monitor. ConfigurationError lists
+    the names.
+
+    >>> checked_configuration("princeton-9300-monochrome").monochrome
+    True
     """
-    asked = name.upper().replace("-", "_")
-    if asked not in CONFIGURATIONS:
-        near = [candidate for candidate in CONFIGURATIONS if candidate.startswith(asked)]
-        near = near or difflib.get_close_matches(asked, CONFIGURATIONS, n=1)
-        advice = f"did you mean {near[0]}?" if asked and near else "choose one of them"
+    if isinstance(name, Configuration):
+        return name
+    asked = str(name).upper().replace("-", "_")
+    display = asked.removesuffix("_MONOCHROME")
+    if display not in CONFIGURATIONS:
+        near = difflib.get_close_matches(display, CONFIGURATIONS, n=1, cutoff=0.5)
+        advice = f"did you mean {near[0]}?" if near else "choose one of them"
         raise ConfigurationError(
             f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
         )
-    return CONFIGURATIONS[asked]
-
-
-def checked_configuration(configuration: object) -> Configuration:
-    """The configuration itself, or the display of that name; ConfigurationError otherwise."""
-    if isinstance(configuration, str):
-        return configuration_named(configuration)
-    if not isinstance(configuration, Configuration):
-        raise ConfigurationError(
-            f"a configuration must be a Configuration or the name of one, not {configuration!r}; "
-            f"choose one of {', '.join(sorted(CONFIGURATIONS))}"
-        )
-    return configuration
+    configuration = CONFIGURATIONS[display]
+    return configuration if display == asked else replace(configuration, monochrome=True)

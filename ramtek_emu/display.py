@@ -16,7 +16,7 @@ from ramtek_emu.checks import checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration, checked_configuration
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, ILLEGAL
 from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
@@ -122,7 +122,7 @@ class Ramtek9300:
 
     def _take(self, stream: Words) -> Iterator[int]:
         executed = 0
-        for instruction in self.decoder.feed(stream, in_rows=self.beam is None):
+        for instruction in self.decoder.feed(stream):
             # A reset during the pause feeds the decoder, too.
             used = self.decoder.used
             if self.beam is None:
@@ -144,6 +144,10 @@ class Ramtek9300:
         written = self.frame_buffer.written
         execute(self.processor, instruction)
         self.scan_out.follow_beam()
+        if instruction.format is ILLEGAL:
+            # Assumed: the words of a row are read one by one; so its time does not depend on cuts.
+            beam.charge(len(instruction.data), 0, len(instruction.data))
+            return
         words = 1 + sum(map(len, instruction.operands.values())) + len(instruction.data)
         beam.charge(words, self.frame_buffer.written - written)
 

@@ -361,7 +361,7 @@ def stream_samples() -> tuple[bytes, ...]:
         instructions.write_vectors([[20, 10], [30, 15], [5, 20]], 9), instructions.write_cursor(0, 5, 6),
         instructions.write_segments([[1, 2, 12, 9], [3, 3, 8, 20]], 7), instructions.read_cursor(0),
         instructions.write_text("What is this?", 1, 1), next(instructions.read_image(0, 0, 9, 5))[0],
-        instructions.read_entries(4, 9), instructions.load_short_entries(8, [[1, 2, 3]]),
+        instructions.read_entries(4, 9), instructions.load_entries(8, [[1, 2, 3]], short=True),
     )  # fmt: skip
     streams = (*BOXES_STREAM, *image), (instructions.reset(), *drawing), (np.array(NEWER, np.uint16),)
     return tuple(

@@ -29,10 +29,10 @@ PUBLIC_NAMES = {
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "FAMILY", "GMR_9300",
-        "HostPort", "InstructionError", "JPL_9460", "Joystick", "ListingError", "MissingInputError", "NCAR_9460",
-        "NoScreenError", "OutputError", "OutputExistsError", "PRINCETON_9300", "PortError", "Ramtek9300",
-        "RamtekError", "Recorder", "ReplyError", "SnapshotError", "TcpPort", "Timing", "UnixPort",
-        "WordsError", "WriteError", "read_snapshot", "write_snapshot",
+        "HostPort", "InstructionError", "JPL_9460", "Joystick", "ListingError", "MissingInputError",
+        "NCAR_9460", "NoScreenError", "OutputError", "OutputExistsError", "PRINCETON_9300", "PortError",
+        "Ramtek9300", "RamtekError", "Recorder", "ReplyError", "SnapshotError", "TcpPort", "Timing",
+        "UnixPort", "WordsError", "WriteError", "read_snapshot", "write_snapshot",
     ],
 }  # fmt: skip
 

@@ -112,8 +112,11 @@ class Replay:
         The display must be between two instructions. With `has_moved`, something other than an instruction
         has changed it, such as its joystick or a reset, and a state is due.
         """
+        count, end = len(self.stream), self.stream.ends[-1]
         self.stream.append(words)
-        if has_moved or thread_time() >= self._due:
+        # The last state is within a row of illegal words if the row goes on; replace it.
+        was_within = self.prepared == count and self.stream.ends[count] > end
+        if has_moved or was_within or thread_time() >= self._due:
             self._keep(self._packer.pack(display, len(self.stream), None))
             self._due = thread_time() + self._seconds
 
@@ -156,20 +159,14 @@ class Replay:
                 yield begin, end, following is None or following.may_touch(window)
 
     def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
-        """Run a display from `number` to `end`; yields the number after each instruction.
-
-        Consecutive illegal words are one step.
-        """
-        ends = self.stream.ends[number : end + 1] - self.stream.ends[number]
-        place = index = 0
+        """Run a display from `number` to `end`; yields the number after each instruction."""
+        place = 0
         for used in display.send_stepwise(self.stream.words_between(number, end)):
             # A long instruction pauses with the count of the words before it.
             if used > place:
                 place = used
-                index += 1
-                if ends[index] < used:
-                    index = int(np.searchsorted(ends, used))
-                yield number + index
+                number += 1
+                yield number
 
 
 def reply_of(display: Ramtek9300) -> Words:

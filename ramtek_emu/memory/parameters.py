@@ -35,7 +35,7 @@ def register(point: Point) -> Point:
 def coefficients(words: tuple[int, ...]) -> tuple[int, ...]:
     """The six numbers of a conic: from six words of 16 bits, or from twelve, high word first.
 
-    Hardware: LIN wc.c sends pairs whose high word is always 0.
+    Hardware: LIN setp.c sends six words, and wc.c pairs whose high word is always 0.
     Assumed: a pair whose high word is 0 is therefore the 16-bit number in its low word, which may be
     negative; any other pair is a number of 32 bits.
     """
@@ -108,8 +108,6 @@ class Parameters:
     def operand(self, name: str) -> tuple[int, ...]:
         """The words of an operand."""
         value = getattr(self, name)
-        if name == "conic":
-            value = tuple(half for number in value for half in (number >> 16, number))
         return tuple(number & 0xFFFF for number in (value if isinstance(value, tuple) else (value,)))
 
     @property

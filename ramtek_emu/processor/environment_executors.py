@@ -22,9 +22,9 @@ NO_OPCODES: Final = bytes(set(range(256)) - FORMAT_OF_OPCODE.keys())
 
 
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: PRG (the status bit). Assumed: only the illegal word is skipped."""
+    """Hardware: PRG (the status bit). Assumed: only the illegal words are skipped."""
     processor.flag_illegal()
-    words = instruction.data if len(instruction.data) else np.array(instruction.operands["word"], np.uint16)
+    words = instruction.data
     processor.illegal_words += len(words)
     if processor.foreign is None and not processor.configuration.extended:
         opcodes = words.astype(">u2").tobytes()[::2].translate(None, NO_OPCODES)
@@ -79,7 +79,8 @@ def restore_environment(processor: Processor, instruction: Instruction) -> None:
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
     """Reply the operands that the flag words name, in the order of the operand table.
 
-    Assumed: all of this. Without flag words every operand is replied.
+    Assumed: all of this. Without flag words every operand is replied. CONE is its six words: the lower halves
+    of coefficients that WC has sent as pairs.
     """
     names = instruction.operands or OPERANDS
     words = [word for name in names for word in processor.parameters.operand(name)]

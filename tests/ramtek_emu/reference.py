@@ -201,14 +201,15 @@ def write_text(
 
 
 OPERAND_WORDS = (
-    (1, 1, 1, 2, 2, 2, 4, 1, 2, 2, 1, 1, 12, 1, 1, 2),
+    (1, 1, 1, 2, 2, 2, 4, 1, 2, 2, 1, 1, 6, 1, 1, 2),
     (1, 4, 2, 2, 1, 1),
 )
 
 
 def split(stream: list[int]) -> list[list[int]]:
-    """The words of the whole instructions of a stream, read word by word."""
+    """The words of the whole instructions of a stream, read word by word; illegal words are joined."""
     formats = {format.opcode: format for format in FORMATS}
+    was_illegal = False
     parts: list[list[int]] = []
     words = iter(stream)
     while True:
@@ -229,25 +230,29 @@ def split(stream: list[int]) -> list[list[int]]:
                         take((value + 1) // 2)
             elif format is not None:
                 flag_words = [take(1) if first & flag else 0 for flag in (2, 4)]
+                head = part.copy()
                 following = sum(
                     count
                     for flag_word, counts in zip(flag_words, OPERAND_WORDS, strict=True)
                     for bit, count in enumerate(counts)
                     if flag_word & 1 << bit
                 )
-                before = sum(
-                    count for bit, count in enumerate(OPERAND_WORDS[0][:12]) if flag_words[0] & 1 << bit
-                )
                 if format.requests_operands:
                     following = 0
-                elif format.name == "WC" and first & 1 and flag_words[0] & 1 << 12:
-                    # There are six coefficients if the next word is 4 and would be half a coefficient.
-                    half = following - 6 - before
-                    if half < 12 and half % 2 == 0 and take(following - 6 + 1) == 4:
-                        take(2)
-                        parts.append(part)
-                        continue
-                    following -= following - 6 + 1 if half < 12 and half % 2 == 0 else 0
+                elif format.name == "WC" and flag_words[0] & 1 << 12:
+                    # Twelve coefficients, unless the word after six is 4 and would be an upper half.
+                    before = sum(
+                        count for bit, count in enumerate(OPERAND_WORDS[0][:13]) if flag_words[0] & 1 << bit
+                    )
+                    take(following)
+                    following = 6
+                    if first & 1 and len(part) - len(head) - before in (0, 2, 4):
+                        if take(1) == 4:
+                            take(2)
+                            parts.append(part)
+                            was_illegal = False
+                            continue
+                        following = 5
                 take(following)
                 if first & 1:
                     length = take(1)
@@ -255,4 +260,8 @@ def split(stream: list[int]) -> list[list[int]]:
                         take((length + 1) // 2)
         except StopIteration:
             return parts
-        parts.append(part)
+        if format is None and was_illegal:
+            parts[-1] += part
+        else:
+            parts.append(part)
+        was_illegal = format is None

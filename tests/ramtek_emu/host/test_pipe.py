@@ -22,7 +22,6 @@ from ramtek_emu.host.pipe import (
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.disassembler import items
-from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.monitor.window import Monitor
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.film_reader import decoded
@@ -147,7 +146,7 @@ def seen_load(number: int) -> bytes:
     return stream(instructions.load_entries(0, [(20 * number, 0, 0)]))
 
 
-def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[Instruction], bool]) -> CutReader:
+def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[int], bool]) -> CutReader:
     """A cut reader of a stream that arrives in pieces."""
     return CutReader(in_pieces(data, cuts), SMALL, is_cut)
 

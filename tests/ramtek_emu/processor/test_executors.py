@@ -163,7 +163,7 @@ def test_a_circle_that_was_drawn_is_filled_from_its_center() -> None:
 
 
 def test_a_conic_comes_as_pairs_of_words_or_as_single_ones() -> None:
-    pairs, singles = Ramtek9300(), Ramtek9300()
+    pairs, singles = Ramtek9300(FAMILY), Ramtek9300(FAMILY)
     pairs.send(sent_words([0x0F03, 0x9002, 7, 0, 1, 0, 1, 0, 0, 0, -80, 0, 0, 0, 0, 100, 100, 4, 140, 60]))
     singles.send(sent_words([0x0F03, 0x9002, 7, 1, 1, 0, -80, 0, 0, 100, 100, 4, 140, 60]))
     assert (pairs.words == singles.words).all()
@@ -174,6 +174,9 @@ def test_a_conic_comes_as_pairs_of_words_or_as_single_ones() -> None:
     # The coefficients stay: another quarter with a number of pixels, as extended pairs.
     pairs.send(sent_words([0x0F02, 0x9000, 0, 1, 0, 1, 0, 0, -1, -80, 0, 0, 0, 5, 300, 300]))
     assert np.count_nonzero(pairs.words[250:350, 250:350]) == 5
+    # READP replies six words, which SET takes.
+    pairs.send(sent_words([0x2402, 0x1000]))
+    assert pairs.receive(6).tolist() == [1, 1, 0, 0xFFB0, 0, 5]
 
 
 def test_a_loaded_character_takes_the_place_of_its_code() -> None:
@@ -226,8 +229,6 @@ def test_parameters_are_read_as_they_were_set(chosen: list[str], seed: int) -> N
     operands = {
         name: [(seed + 77 * place) & 0x7FFF for place in range(OPERANDS[name].words)] for name in chosen
     }
-    if "conic" in operands:
-        operands["conic"] = [0, 9, 0, 8, 0xFFFF, 0xFFF0, 0, 4, 1, 2, 0, 1]
     display.send(instructions.set_parameters(**operands))
     names = [name for name in OPERANDS if name in chosen]
     bits = sum(1 << list(OPERANDS).index(name) for name in names)
