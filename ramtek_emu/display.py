@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from os import PathLike
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 
@@ -24,16 +24,6 @@ from ramtek_emu.processor import cursor_executors, drawing_executors, environmen
 from ramtek_emu.processor.processor import Executors, Pauses, Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
-
-
-class Part(Protocol):
-    """A part of a display."""
-
-    def state(self) -> dict[str, Any]:
-        """What the part is, by name."""
-
-    def restore(self, state: dict[str, Any]) -> None:
-        """Become as another part was."""
 
 
 class Ramtek9300:
@@ -72,8 +62,8 @@ class Ramtek9300:
     def state(self) -> dict[str, dict[str, Any]]:
         """All that the display is, by part and name: numbers, tuples, lists, dictionaries and arrays.
 
-        The arrays are the memories themselves, so copy what you keep. The words of an incomplete instruction
-        and unread replies belong to a host and are left out, and so are the counts of words and resets.
+        The words of an incomplete instruction and unread replies belong to a host and are left out. So are
+        the counts of words and resets.
         """
         return {name: part.state() for name, part in self._parts().items()}
 
@@ -92,9 +82,9 @@ class Ramtek9300:
         self.restore(state)
         self.resets, self.words_received, self.decoder, self.processor.replies = beside
 
-    def _parts(self) -> dict[str, Part]:
+    def _parts(self) -> dict[str, Any]:
         """The parts that have a state; the beam paints the monitor image, so it comes first."""
-        timed: dict[str, Part] = {} if self.beam is None else {"beam": self.beam, "scan_out": self.scan_out}
+        timed: dict[str, Any] = {} if self.beam is None else {"beam": self.beam, "scan_out": self.scan_out}
         return {
             "frame_buffer": self.frame_buffer,
             "lookup_table": self.lookup_table,

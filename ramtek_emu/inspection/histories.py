@@ -76,7 +76,7 @@ def next_change(replay: Replay, selection: Selection, after: int) -> Search[int 
     return None
 
 
-class Change(NamedTuple):
+class SelectionWrite(NamedTuple):
     """An instruction that wrote to a selection, with its words or colors before and after."""
 
     number: int
@@ -84,7 +84,7 @@ class Change(NamedTuple):
     after: AnyArray
 
 
-def _changes(replay: Replay, selection: Selection, after: int, until: int) -> Iterator[Change | None]:
+def _changes(replay: Replay, selection: Selection, after: int, until: int) -> Iterator[SelectionWrite | None]:
     """The instructions that write to a selection; None for any other instruction, or part of the stream."""
     if isinstance(selection, EntryRange):
         # No other instruction changes entries, so only loads are executed.
@@ -113,7 +113,7 @@ def _executed(replay: Replay, display: Ramtek9300, numbers: list[int]) -> Iterat
 
 def _noted(
     display: Ramtek9300, touched: Dots, memory: AnyArray, numbers: Iterator[int]
-) -> Iterator[Change | None]:
+) -> Iterator[SelectionWrite | None]:
     """The changes of a part of a memory that executed instructions touch."""
     before = memory.copy()
     for number in numbers:
@@ -123,5 +123,5 @@ def _noted(
             continue
         touched[...] = False
         now = memory.copy()
-        yield Change(number, before, now)
+        yield SelectionWrite(number, before, now)
         before = now

@@ -31,6 +31,8 @@ STATE_BYTES: Final = 64
 """Limit: the bytes of states for each word of the stream, on average."""
 LEAST_STATE_BYTES: Final = 64 << 20
 """Limit: the bytes of states that even a short stream may take."""
+STEPS_AT_ONCE: Final = 256
+"""The number of instructions that a display is given at once while states are kept."""
 
 
 class Replay:
@@ -160,13 +162,16 @@ class Replay:
 
     def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
         """Run a display from `number` to `end`; yields the number after each instruction."""
-        place = 0
-        for used in display.send_stepwise(self.stream.words_between(number, end)):
-            # A long instruction pauses with the count of the words before it.
-            if used > place:
-                place = used
-                number += 1
-                yield number
+        while number < end:
+            # The decoder looks at all words that it is given before the first instruction is executed.
+            piece = self.stream.words_between(number, min(number + STEPS_AT_ONCE, end))
+            place = 0
+            for used in display.send_stepwise(piece):
+                # A long instruction pauses with the count of the words before it.
+                if used > place:
+                    place = used
+                    number += 1
+                    yield number
 
 
 def reply_of(display: Ramtek9300) -> Words:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ramtek_emu.arrays import Booleans, Dots, Numbers, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
-from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanBlock, ScanOrder, Window, blocks
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window, blocks
 
 
 class WriteEnable(NamedTuple):
@@ -49,8 +49,8 @@ class FrameBuffer:
         return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
 
     def state(self) -> dict[str, Any]:
-        """The words; the array is this memory itself, so copy what you keep."""
-        return {"words": self.words}
+        """The words, (lines, elements) uint16."""
+        return {"words": self._words.copy()}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Write the words of a state."""
@@ -110,7 +110,12 @@ class FrameBuffer:
         elif size:
             for block in blocks(window, order, start, count):
                 out = words[block.first : block.first + block.inner * block.outer]
-                self._load(block, order, out.reshape(block.outer, block.inner))
+                place = order.block_window(block.start, block.inner, block.outer)
+                seen = place.intersection(self.window)
+                if not seen.is_empty:
+                    memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
+                    shaped = out.reshape(block.outer, block.inner)
+                    shaped[part_of(place, seen, order)] = order.oriented(memory)
         return words, order.after(window, start, count) if size else start
 
     def write_block(
@@ -181,13 +186,6 @@ class FrameBuffer:
             mixed = (memory & np.uint16(~mask & 0xFFFF)) | mixed
         np.copyto(memory, mixed, where=True if dots is None else dots)
         self.written += memory.size if dots is None else int(np.count_nonzero(dots))
-
-    def _load(self, block: ScanBlock, order: ScanOrder, out: Words) -> None:
-        place = order.block_window(block.start, block.inner, block.outer)
-        clipped = place.intersection(self.window)
-        if not clipped.is_empty:
-            memory = self._words[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
-            out[part_of(place, clipped, order)] = order.oriented(memory)
 
 
 def inside_of(window: Window, elements: Numbers, lines: Numbers) -> Booleans:

@@ -47,8 +47,8 @@ class LookupTable:
         return f"LookupTable({self.size} entries, {format}, {self.written} words written)"
 
     def state(self) -> dict[str, Any]:
-        """The entries as 0x00RRGGBB, and the address counter; the array is this memory itself."""
-        return {"entries": self.packed, "table_address": self.address}
+        """The entries as 0x00RRGGBB, (entries,) uint32, and the address counter."""
+        return {"entries": self._packed.copy(), "table_address": self.address}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Write the entries of a state, and set the address counter, which wraps."""

@@ -86,10 +86,10 @@ class Processor:
         return f"Processor({self.configuration.name}, {state})"
 
     def state(self) -> dict[str, Any]:
-        """All but the current parameters and the replies; the array is this memory itself."""
+        """All but the current parameters and the replies."""
         return {
             "saved": [parameters.state() for parameters in self.saved],
-            "loaded_characters": self.loaded_characters,
+            "loaded_characters": self.loaded_characters.copy(),
             "illegal": self._illegal,
             "illegal_words": self.illegal_words,
             "without_effect": self.unimplemented,

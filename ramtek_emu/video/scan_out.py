@@ -147,9 +147,9 @@ class ScanOut:
     def state(self) -> dict[str, Any]:
         """With a beam: the number of lines painted since power-on, and the image on the monitor.
 
-        The image is (lines, elements) uint32, 0x00RRGGBB; the array is the image itself.
+        The image is (lines, elements) uint32, 0x00RRGGBB.
         """
-        return {"lines_painted": self._painted, "monitor_image": self._monitor_image}
+        return {"lines_painted": self._painted, "monitor_image": self._monitor_image.copy()}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Show the monitor image of a state."""

@@ -200,6 +200,18 @@ def test_a_copy_of_a_display_goes_on_as_the_display_does_and_shares_nothing(
     assert (twin.joystick.position, twin.joystick.driven) == (display.joystick.position, (twin.cursors[0],))
 
 
+def test_a_display_goes_back_to_a_state_and_drops_what_is_the_hosts() -> None:
+    display = busy_display(replace(GMR_9300, timing=Timing()))
+    state, before = display.state(), snapshot_bytes(display)
+    display.send(sent_words([4, 5, 6, 0x1600, 7, 0x0407, 0x1700, 0x0300, 0, 4, 1, 2]))
+    display.joystick.press_enter()
+    display.restore(state)
+    assert snapshot_bytes(display) == before
+    assert (display.decoder.pending_words, display.processor.waiting) == (0, 0)
+    display.send(instructions.erase())
+    assert (state["frame_buffer"]["words"] != display.words).any()
+
+
 def test_the_arrays_of_a_copy_are_read_only_and_stay_current() -> None:
     twin = copy.deepcopy(busy_display(GMR_9300))
     words, entries = twin.words, twin.lookup_table.packed

@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,7 +8,7 @@ from hypothesis import strategies as st
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, Ramtek9300, Timing, instructions
 from ramtek_emu.inspection.differences import first_difference, first_different_instruction
 from ramtek_emu.inspection.replay import Replay
-from ramtek_emu.inspection.states import Packer, State, size_of, thinned
+from ramtek_emu.inspection.states import Packer, size_of
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.inspection.watching import watched
 from ramtek_emu.instruction_set.disassembler import items
@@ -134,25 +132,6 @@ def test_instructions_are_counted_as_the_listing_shows_them(
     assert stream.words_between(0, len(stream)).tolist() == words[: stream.ends[-1]]
 
 
-@given(st.lists(streams(), min_size=1, max_size=5))
-def test_every_state_gives_its_display_back(rounds: list[list[int]]) -> None:
-    display, packer = Ramtek9300(SMALL), Packer()
-    states: list[State] = []
-    expected: list[bytes] = []
-    for words in rounds:
-        display.send(np.array(words, np.uint16))
-        display.receive(display.processor.waiting)
-        states.append(packer.pack(display, len(states), None))
-        expected.append(snapshot_bytes(display))
-    for state, snapshot in zip(states, expected, strict=True):
-        # A display that was restored can be drawn on, and the state stays as it was.
-        for _ in range(2):
-            display.send(np.array([0x0700, 0x1500], np.uint16))
-            state.restore(display)
-            assert snapshot_bytes(display) == snapshot
-            display.send(instructions.reset())
-
-
 def test_states_share_what_stayed_the_same() -> None:
     display, packer = Ramtek9300(), Packer()
     display.send(instructions.write_image(np.random.default_rng(1).integers(0, 1024, (480, 640))))
@@ -163,25 +142,6 @@ def test_states_share_what_stayed_the_same() -> None:
     second = packer.pack(display, 1, None)
     assert size_of([first]) > 300_000
     assert size_of([first, second]) - size_of([first]) < 60_000
-
-
-@given(st.lists(st.none() | st.integers(0, 11), min_size=1, max_size=12))
-def test_fewer_states_know_what_was_touched_before_them(places: list[int | None]) -> None:
-    states = [
-        State(
-            number, b"", (), None, None if place is None else np.packbits(np.arange(12) == place)[np.newaxis]
-        )
-        for number, place in enumerate(places)
-    ]
-    fewer = thinned(states)
-    assert fewer[0] is states[0]
-    assert [state.number for state in fewer[1:-1]] == list(range(2, len(states) - 1, 2))
-    assert fewer[-1].number == states[-1].number
-    for before, state in itertools.pairwise(fewer):
-        between = places[before.number + 1 : state.number + 1]
-        for place in range(12):
-            is_touched = state.may_touch(Window(place, 0, place, 0))
-            assert is_touched is (None in between or place in between)
 
 
 @given(st.data(), windows(), scan_codes, masks, windows())
@@ -237,18 +197,6 @@ def test_the_first_different_instruction(words: list[int], number: int) -> None:
     shorter = Stream(SMALL, stream.words_between(0, number))
     assert first_different_instruction(stream, shorter) == number + 1
     assert first_different_instruction(stream, stream) == len(stream) + 1
-
-
-def test_a_cursor_that_only_one_stream_reads_differs_by_its_enter() -> None:
-    start = Ramtek9300(SMALL)
-    start.joystick.press_enter()
-    alike, read = instructions.no_operation(), instructions.read_cursor(0)
-    words = [np.concatenate((alike, last)) for last in (instructions.no_operation(), read)]
-    words[0][0] |= 1
-    found = first_difference(Stream(SMALL, words[0]), Stream(SMALL, words[1]), start)
-    assert found is not None
-    assert found.number == 2
-    assert [cursors[0]["enter"] for cursors in found.where["cursors"]] == [True, False]
 
 
 def test_a_difference_says_where() -> None:
