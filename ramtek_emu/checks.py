@@ -58,8 +58,7 @@ def whole_numbers(values: object, thing: str, error: type[WordsError] | type[Col
     if array.size == 0 and array.dtype.kind == "f":
         array = array.astype(np.uint16)
     if array.dtype.kind not in "ui":
-        name = array.dtype.name
-        raise error(f"{thing} must be whole numbers, not {name}; convert them first, rounding half up")
+        raise error(f"{thing} must be whole numbers, not {array.dtype}; convert them first, rounding half up")
     return array
 
 

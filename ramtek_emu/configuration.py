@@ -1,17 +1,13 @@
-"""Configuration: the sizes and formats of a display, and the displays that the sources describe.
-
->>> GMR_9300.elements, GMR_9300.lines, GMR_9300.largest_word
-(640, 480, 1023)
-"""
+"""Configuration: the sizes and formats of a display, and the displays that the sources describe."""
 
 from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass, replace
 from enum import Enum
+from operator import index
 from typing import Final
 
-from ramtek_emu.checks import checked_number
 from ramtek_emu.errors import ConfigurationError
 from ramtek_emu.timing import Timing
 
@@ -61,12 +57,17 @@ class Configuration:
         limits = {"elements": (1, 4096), "lines": (1, 4096), "planes": (1, 16), "cursors": (0, 8)}
         limits |= {"visible_elements": (1, self.elements), "visible_lines": (1, self.lines)}
         limits["entries"] = (256, 4096)
-        for name, range_ in limits.items():
+        for name, (least, most) in limits.items():
             size = getattr(self, name)
-            if size is not None or name not in ("visible_elements", "visible_lines"):
-                thing = f"{name} of {self.name}"
-                size = checked_number(size, thing, *range_, "choose another size", ConfigurationError)
-                object.__setattr__(self, name, size)
+            if size is None and name in ("visible_elements", "visible_lines"):
+                continue
+            # Sizes may be numbers of numpy.
+            if isinstance(size, bool) or not hasattr(size, "__index__") or not least <= size <= most:
+                raise ConfigurationError(
+                    f"{name} of {self.name} must be a whole number from {least} to {most}, not {size!r}; "
+                    "choose another size"
+                )
+            object.__setattr__(self, name, index(size))
         if self.entries & (self.entries - 1):
             raise ConfigurationError(
                 f"entries of {self.name} must be a power of 2, not {self.entries}; choose another size"

@@ -42,7 +42,7 @@ from autocolor.images import display_image
 from autocolor.journal.autosave import JOURNAL, Autosave
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
-from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, instructions
+from ramtek_emu import FAMILY, GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, instructions
 from ramtek_emu.errors import RamtekError
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
@@ -335,7 +335,7 @@ def fault_of_sql(data: bytes) -> str:
 
 # The display.
 
-CONFIGURATIONS: Final = (SMALL, GMR_9300, PRINCETON_9300, NCAR_9460, *(SMALL,) * 12)
+CONFIGURATIONS: Final = (SMALL, FAMILY, PRINCETON_9300, NCAR_9460, *(SMALL,) * 12)
 """The displays of streams, mostly the small one, which takes a hundredth of the time of the others."""
 NEWER: Final = (
     *(0x2701, 0x080E, 0x0041, 0x0006, 0xFF, 0, 512, 639, 1023, 0, 512, 639, 1023, 0, 512, 0x4EFF),

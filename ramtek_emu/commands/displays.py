@@ -37,7 +37,7 @@ configuration_option: Final = click.option(
     "--configuration",
     metavar="NAME",
     shell_complete=complete_configurations,
-    help="The display; GMR_9300 if not given.",
+    help="The display; GMR_9300 if not given. NAME-monochrome has a black-and-white monitor.",
 )
 table_option: Final = click.option(
     "--table",

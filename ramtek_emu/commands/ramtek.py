@@ -57,7 +57,7 @@ def configurations(context: click.Context, parameter: click.Parameter, incomplet
     "--configuration",
     metavar="NAME",
     shell_complete=configurations,
-    help="The display to show it on; GMR_9300 if not given.",
+    help="The display to show it on; GMR_9300 if not given. NAME-monochrome has a black-and-white monitor.",
 )
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
 @click.option("--full-screen", is_flag=True, help="Fill the screen.")

@@ -63,7 +63,7 @@ test_what_is_no_stream = refused(
     [
         *((value, BYTES.format(type(value).__name__)) for value in (bytearray(2), memoryview(b"12"))),
         *((value, WHOLE.format("object")) for value in (None, [10**30], [[1], [2, 3]])),
-        ("0700", WHOLE.format("str128")),
+        ("0700", WHOLE.format("<U4")),
         (1792, "a stream of words must be one row, not of shape (); flatten it first"),
     ],
 )

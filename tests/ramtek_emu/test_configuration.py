@@ -56,14 +56,14 @@ test_what_no_display_is_called = refused(
         ("", f"a configuration must be one of {NAMES}, not ''; choose one of them"),
     ],
 )
+SIZE = "{} of SMALL must be a whole number from {} to {}, not {}; choose another size".format
 test_what_no_display_has = refused(
     lambda sizes: replace(SMALL, **sizes),
     [
-        ({"lines": 0}, "lines of SMALL must be 1 to 4096, not 0; choose another size"),
-        ({"planes": 17}, "planes of SMALL must be 1 to 16, not 17; choose another size"),
-        ({"visible_lines": 10}, "visible_lines of SMALL must be 1 to 9, not 10; choose another size"),
+        ({"lines": 0}, SIZE("lines", 1, 4096, 0)),
+        ({"elements": 1.0}, SIZE("elements", 1, 4096, 1.0)),
+        ({"visible_lines": 10}, SIZE("visible_lines", 1, 9, 10)),
         ({"entries": 1000}, "entries of SMALL must be a power of 2, not 1000; choose another size"),
-        ({"cursors": 9}, "cursors of SMALL must be 0 to 8, not 9; choose another size"),
         ({"monochrome": 1}, "monochrome of a display must be bool, not 1; choose another value"),
         ({"timing": 5}, "timing of a display must be Timing or None, not 5; choose another value"),
     ],

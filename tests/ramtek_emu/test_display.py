@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from ramtek_emu import (
-    GMR_9300,
+    FAMILY,
     NCAR_9460,
     PRINCETON_9300,
     Configuration,
@@ -173,9 +173,9 @@ COPIES: list[Callable[[Ramtek9300], Ramtek9300]] = [
     lambda display: pickle.loads(pickle.dumps(display)),
 ]
 EVERY_KIND = [
-    GMR_9300,
+    FAMILY,
     PRINCETON_9300,
-    replace(GMR_9300, timing=Timing()),
+    replace(FAMILY, timing=Timing()),
     replace(NCAR_9460, monochrome=True),
 ]
 
@@ -213,7 +213,7 @@ def test_a_display_goes_back_to_a_state_and_drops_what_is_the_hosts() -> None:
 
 
 def test_the_arrays_of_a_copy_are_read_only_and_stay_current() -> None:
-    twin = copy.deepcopy(busy_display(GMR_9300))
+    twin = copy.deepcopy(busy_display(FAMILY))
     words, entries = twin.words, twin.lookup_table.packed
     for handed_out in (words, entries, twin.entries, characters()):
         assert not handed_out.flags.writeable

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
+from ramtek_emu import FAMILY, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import check_words_within_planes
 from tests.ramtek_emu.recorded_streams import RECORDED
@@ -50,7 +50,7 @@ def with_faults(stream: NDArray[np.uint16], random: np.random.Generator) -> NDAr
 
 
 @pytest.mark.parametrize(
-    "configuration", [GMR_9300, PRINCETON_9300, NCAR_9460], ids=lambda configuration: configuration.name
+    "configuration", [FAMILY, PRINCETON_9300, NCAR_9460], ids=lambda configuration: configuration.name
 )
 @pytest.mark.parametrize("session", range(3))
 @pytest.mark.parametrize("count", [12, pytest.param(100, marks=pytest.mark.thorough)])
