@@ -24,7 +24,7 @@ What is **not** modeled
 
 The parts of the package, each of which uses only those before it: the basic modules (errors, arrays, checks,
 timing, configuration, writing, png, command_line), instruction_set, memory, drawing, video, processor,
-instructions, display, host, monitor, snapshot, inspection, commands.
+instructions, display, host, monitor, conformance, snapshot, inspection, commands.
 
 The sources are named by keys, such as LIN for Linton's C library of 1978. docs/SOURCES.md lists them with
 their repositories, revisions and files.

@@ -47,7 +47,7 @@ WINGS = {
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "films",
         "command_line",
         "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
-        "host", "monitor", "snapshot", "inspection", "testing", "commands", "__main__",
+        "host", "monitor", "conformance", "snapshot", "inspection", "testing", "commands", "__main__",
     ),
 }  # fmt: skip
 """The wings of a package in the order of its data: each may use those before it and no other."""

@@ -36,6 +36,8 @@ NOT_RUN = {
     "ramtek tty /tmp/display -- env LD_PRELOAD=$PWD/whole_reads.so old_program {}": (
         "it runs a program that the reader has"
     ),
+    "ramtek conformance -- ramtek serve --stdio --configuration {}": "it takes some minutes",
+    "ramtek conformance --only princeton-9300 -- ./my_emulator": "it runs a program that the reader has",
     "ramtek serve --port 9300 --window": "it waits for hosts",
     "ramtek serve --port 9300 --joystick stick -o last.png &": "it waits for hosts",
     "ramtek serve --port 9300 --window --record session.ramtek": "it waits for hosts",

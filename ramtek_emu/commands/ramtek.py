@@ -28,6 +28,7 @@ class RamtekGroup(CommandGroup):
         "inspect": "a stream at any of its instructions; who wrote a pixel",
         "diff": "the first instruction after which two streams differ",
         "assemble": "a listing back into its stream",
+        "conformance": "the claims of the conformance suite, here or on another emulator",
         "serve": "a display for programs, over TCP, on a Unix socket or on a pipe",
         "tty": "a program that opens a device, on a display of serve --unix",
     }

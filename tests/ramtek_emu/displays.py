@@ -8,16 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from ramtek_emu import FAMILY, Configuration, Ramtek9300, instructions
-from tests.ramtek_emu.strategies import sent_words
-
-
-def sent(*texts: str, configuration: Configuration = FAMILY) -> Ramtek9300:
-    """A display that was sent these words, in hexadecimal; FAMILY takes every instruction."""
-    display = Ramtek9300(configuration)
-    for text in texts:
-        display.send(np.array([int(word, 16) for word in text.split()], np.uint16))
-    return display
+from ramtek_emu import Ramtek9300, instructions
 
 
 @contextmanager
@@ -28,19 +19,6 @@ def smallest_slices() -> Iterator[None]:
         patch.setattr("ramtek_emu.drawing.areas.MOST_RUNS", 1)
         patch.setattr("ramtek_emu.processor.image_executors.MOST_COPIED", 1)
         yield
-
-
-def box(display: Ramtek9300) -> tuple[int, int, int, int]:
-    """Left, top, right and bottom of the words that are not 0."""
-    lines, elements = np.nonzero(display.words)
-    return (int(elements.min()), int(lines.min()), int(elements.max()), int(lines.max()))
-
-
-def read(display: Ramtek9300, *words: int) -> list[int]:
-    """The replies of the display to these words."""
-    display.send(sent_words(words))
-    answer: list[int] = display.receive(display.processor.waiting).tolist()
-    return answer
 
 
 def colored(display: Ramtek9300) -> Ramtek9300:

@@ -22,7 +22,7 @@ from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import smallest_slices
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
-from tests.ramtek_emu.strategies import SMALL, sent_words, sliced_instructions
+from tests.ramtek_emu.strategies import SLICED, SMALL, drawing_instructions, sent_words
 from tests.tables import refused
 
 
@@ -248,7 +248,7 @@ def test_a_reset_within_an_instruction_leaves_it_out_of_the_recording() -> None:
 
 
 @given(
-    st.lists(sliced_instructions() | streams(12).map(sent_words), min_size=1, max_size=4),
+    st.lists(drawing_instructions(SLICED) | streams(12).map(sent_words), min_size=1, max_size=4),
     st.integers(0, 400),
     st.sets(st.integers(0, 40), max_size=4),
 )

@@ -7,23 +7,6 @@ from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, instructions
 from ramtek_emu.memory.lookup_table import LookupTable
-from ramtek_emu.testing import words
-
-
-@given(st.integers(0, 0xFFFF), st.integers(0, 40) | st.integers(2040, 2300), st.integers(0, 999))
-def test_a_load_lands_word_by_word_at_the_counter_and_wraps(first: int, count: int, seed: int) -> None:
-    row = np.random.default_rng(seed).integers(0, 1 << 16, count).tolist()
-    table = LookupTable()
-    twin = [0] * 2048
-    for number, word in enumerate(row):
-        address = (first + number) % 2048
-        twin[address] = word & 0xFF if address % 2 else word
-    table.load(first, np.array(row, np.uint16))
-    assert table.read(0, 2048).tolist() == twin
-    assert table.entries.tolist() == [
-        [twin[2 * entry + 1], twin[2 * entry] >> 8, twin[2 * entry] & 0xFF] for entry in range(1024)
-    ]
-
 
 runs = st.tuples(st.integers(0, 2047), st.sampled_from([0, 1, 2, 3, 50, 2048, 2049]))
 
@@ -61,28 +44,6 @@ def test_loading_the_same_entries_repeatedly_counts_as_one_range() -> None:
     table.load(26, np.array([0x0203, 1], np.uint16))
     assert table.entries_written_since(written) is None
     assert table.entries_written_since(table.written - 1) == (13, 14)
-
-
-@given(st.integers(0, 0xFFFF), st.integers(0, 5000))
-def test_a_read_wraps_and_moves_the_counter(first: int, count: int) -> None:
-    table = LookupTable()
-    table.load(0, np.arange(2048, dtype=np.uint16) & np.uint16(0xFF))
-    row = table.read(first, count)
-    assert row.tolist() == [(first + number) % 2048 & 0xFF for number in range(count)]
-    assert table.address == (first + count) % 2048
-
-
-@given(st.integers(0, 0xFFFF), st.lists(words(16), min_size=1, max_size=30))
-def test_twelve_bit_words_come_back_as_they_were_sent(first: int, row: list[int]) -> None:
-    table = LookupTable(PRINCETON_9300)
-    table.load(first, np.array(row, np.uint16))
-    assert table.read(first, len(row)).tolist() == [word & 0xFFF for word in row]
-
-
-def test_full_scale_of_four_bits_is_full_scale_of_eight() -> None:
-    table = LookupTable(PRINCETON_9300)
-    table.load(0, np.array([0x0F08, 0xF000], np.uint16))
-    assert table.entries[:2].tolist() == [[255, 0, 136], [0, 0, 0]]
 
 
 def test_colors_that_do_not_fit_are_not_sent() -> None:

@@ -25,7 +25,6 @@ from ramtek_emu import (
 from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursors, cross
 from ramtek_emu.testing import rasters, streams, words
 from ramtek_emu.video.scan_out import Mark, draw, lines_with, marks
-from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import colored
 from tests.ramtek_emu.strategies import SMALL, cuts, sent_words
 
@@ -37,7 +36,7 @@ def test_the_field_is_each_word_s_entry(raster: NDArray[np.uint16], seed: int) -
     display.send(instructions.write_image(raster))
     display.send(instructions.load_entries(0, colors))
     entries = [(int(red), int(green), int(blue)) for red, green, blue in colors]
-    twin = np.array(reference.field(raster.tolist(), entries))
+    twin = np.array([[entries[word] for word in line] for line in raster.tolist()])
     assert (display.field() == twin).all()
     pixels = np.zeros((9, 13), np.uint32)
     display.scan_out.scan_out_into(pixels)
