@@ -113,35 +113,34 @@ PIXELS_AT_ONCE: Final = 1 << 20
 
 
 def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
-    """Draw a mark for each value of the data, from the base line to the value, along the scan.
+    """Draw a bar for each number of the data, from the base line to the number.
 
-    Hardware: LIN libdoc (the starting point, and along the scan the size of a mark, DIM, and the step from
-    mark to mark, SPACE; the base line; a word for each value); LIN fplot.c (values are places on the screen,
-    lines in scan order 0; DIM and SPACE of 1 plot each element, from one edge of the plot to the other).
-    Assumed: the opcode; a mark is a bar that includes the base line and the value; a value is a signed
-    coordinate, in scan orders 4 to 7 an element, and with relative or indexed addressing is counted from that
-    point; the base line is a coordinate of the memory. The second words of DIM and SPACE, and the place of
-    the start across the scan, have no effect. The size of a mark is at least 1, and marks step as the scan
-    runs. As lines, marks are clipped at the write window alone. The operating point moves along the scan to
-    the place of the next mark.
+    Hardware: LIN libdoc (a starting point, a scanning mode, the dimension and the spacing in the direction of
+    scanning, a base line); LIN fplot.c (data are lines of the screen; DIM 1 and SPACE 1 put n numbers on n
+    elements, so that spacing is the distance of two bars and dimension the width of a bar).
+    Assumed: the opcode, by NCAR's name and by its place among the opcodes of the 9300; that all operands come
+    by flag words as in other instructions; that a mark is a bar in the foreground and includes both ends. The
+    second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters. The scan order gives the
+    direction of the steps; data and base line are the coordinates across it, absolute in each addressing
+    mode, with a sign. Only the memory and the write window clip. The operating point is then where the next
+    bar begins, at the last number, as fplot.c starts at the first number.
     """
     parameters = processor.parameters
-    order, (size, step) = parameters.order, (parameters.dimensions[0], signed(parameters.spacing[0]))
+    order, width, step = parameters.order, max(1, parameters.dimensions[0]), parameters.spacing[0]
     base = signed(parameters.base_line)
     word, _ = processor.colors(instruction)
-    origin = parameters.base(instruction.low_byte)
-    values = processor.points(instruction, 1)[:, 0] + (origin.element if order.vertical else origin.line)
     pixels = 0
-    for number, value in enumerate(values.tolist(), 1):
+    for number, value in enumerate(processor.points(instruction, 1)[:, 0].tolist(), 1):
         first = parameters.start
-        last = order.stepped(first, max(1, size) - 1, 0)
+        last = order.stepped(first, width - 1, 0)
         (left, right), (top, bottom) = map(sorted, zip(first, last, strict=True))
         low, high = sorted((base, value))
         box = Window(low, top, high, bottom) if order.vertical else Window(left, low, right, high)
         before = processor.frame_buffer.written
         processor.frame_buffer.fill(box, word, parameters.enable)
         pixels += processor.frame_buffer.written - before
-        parameters.start = register(order.stepped(first, step, 0))
+        element, line = order.stepped(first, step, 0)
+        parameters.start = register(Point(value, line) if order.vertical else Point(element, value))
         if number % MARKS_AT_ONCE == 0 or pixels >= PIXELS_AT_ONCE:
             pixels = 0
             yield

@@ -384,15 +384,15 @@ class Twin:
 
     def wpb(self) -> None:
         step, axis = STEPS[self.code][0], int(self.code < 4)
-        zero, origin = signed(self.p["base_line"][0]), self.base()[axis]
+        zero, jump = signed(self.p["base_line"][0]), signed(self.p["spacing"][0])
         for word in self.data[: self.length // 2]:
-            value = signed(word) + origin
+            value = signed(word)
             for number in range(max(1, self.p["dimensions"][0])):
                 place = [self.start[0] + number * step[0], self.start[1] + number * step[1]]
                 for place[axis] in range(max(min(zero, value), 0), min(max(zero, value), 99) + 1):
                     self.put((place[0], place[1]), self.colors[0])
-            jump = signed(self.p["spacing"][0])
-            self.start = self.start[0] + jump * step[0], self.start[1] + jump * step[1]
+            along = self.start[0] + jump * step[0], self.start[1] + jump * step[1]
+            self.start = (along[0], value) if axis else (value, along[1])
 
     def fill(self) -> None:
         mask, foreground = self.p["read_mask"][0], self.colors[0]

@@ -200,7 +200,7 @@ def test_a_copy_of_a_display_goes_on_as_the_display_does_and_shares_nothing(
 
 
 def test_a_display_goes_back_to_a_state_and_drops_what_is_the_hosts() -> None:
-    display = busy_display(replace(GMR_9300, timing=Timing()))
+    display = busy_display(replace(FAMILY, timing=Timing()))
     state, before = display.state(), snapshot_bytes(display)
     display.send(sent_words([4, 5, 6, 0x1600, 7, 0x0407, 0x1700, 0x0300, 0, 4, 1, 2]))
     display.joystick.press_enter()
