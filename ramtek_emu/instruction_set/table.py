@@ -168,7 +168,7 @@ SUBSTANTIATED: Final = rows_of("""
 0D WR | write a raster of one bit a pixel | LIN wr.c, PRG rast.c
 0E WVL | write linked vectors | LIN wv.c, LIN wvs.c, PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c
 0F WC | write a conic | LIN wc.c, LIN libdoc
-10 WPB | write a plot | LIN libdoc, LIN fplot.c, opcode from NCAR ramtek.h
+10 WPB | write a plot | LIN libdoc, LIN fplot.c, NCAR ramtek.h, format assumed
 13+ PUSHE none | save the environment | NCAR ramtek.h, format assumed
 14+ POPE none | restore the environment | NCAR ramtek.h, format assumed
 15 LPF rows_0_1 rows_2_3 rows_4_5 rows_6_7 rows_8_9 rows_10_11 | load a character | LIN lcs.c

@@ -13,11 +13,20 @@ from ramtek_emu import Ramtek9300, instructions
 
 @contextmanager
 def smallest_slices() -> Iterator[None]:
-    """Long instructions are executed in the smallest slices: by single lines, circles and runs."""
+    """Long instructions are executed in the smallest slices, such as single lines or circles."""
+    limits = {
+        "drawing.vectors": ("MOST_POINTS",),
+        "drawing.areas": ("MOST_PIXELS", "MOST_RUNS"),
+        "drawing.curves": ("PIXELS_AT_ONCE",),
+        "drawing.text": ("LINES_AT_ONCE", "PIXELS_AT_ONCE"),
+        "processor.drawing_executors": ("MARKS_AT_ONCE", "PIXELS_AT_ONCE"),
+        "processor.image_executors": ("MOST_COPIED", "RASTER_BYTES"),
+        "video.scan_out": ("PAINTED_AT_ONCE",),
+    }
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("ramtek_emu.drawing.vectors.MOST_POINTS", 1)
-        patch.setattr("ramtek_emu.drawing.areas.MOST_RUNS", 1)
-        patch.setattr("ramtek_emu.processor.image_executors.MOST_COPIED", 1)
+        for module, names in limits.items():
+            for name in names:
+                patch.setattr(f"ramtek_emu.{module}.{name}", 1)
         yield
 
 
