@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterable
+from functools import partial
 
 import numpy as np
 
@@ -43,7 +44,7 @@ def configuration_of(display: HostPort) -> Configuration:
 def encoder_of_entries(display: HostPort) -> EntryEncoder:
     """The function that encodes a load of entries, from a first entry on, in the display's format."""
     short = configuration_of(display).entry_format is EntryFormat.WORD_12
-    return instructions.load_short_entries if short else instructions.load_entries
+    return partial(instructions.load_entries, short=short)
 
 
 def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | None = None) -> None:

@@ -100,14 +100,14 @@ def longest_step(words: Words, rounds: int) -> float:
     """The longest time in seconds from one pause of a new display to the next; the best of each step."""
     times = []
     for _ in range(rounds):
-        display = Ramtek9300()
+        display = Ramtek9300("family")
         times.append([time.perf_counter(), *(time.perf_counter() for _ in display.send_stepwise(words))])
     return float(np.diff(times).min(axis=0).max())
 
 
 def figures(rounds: int) -> Iterator[Figure]:
     """Every figure."""
-    display = Ramtek9300()
+    display = Ramtek9300("family")
     image = np.random.default_rng(1).integers(0, 1024, (480, 640)).astype(np.uint16)
     stream = instructions.write_image(image)
     copy = np.empty_like(stream)
@@ -143,7 +143,7 @@ def figures(rounds: int) -> Iterator[Figure]:
 
 def scan_out_figures(stream: Words, rounds: int) -> Iterator[Figure]:
     """Scan-out with cursors, origin and zoom, against plain scan-out after the same write."""
-    display, pixels = Ramtek9300(), np.zeros((480, 640), np.uint32)
+    display, pixels = Ramtek9300("family"), np.zeros((480, 640), np.uint32)
     display.send(stream)
     touch = instructions.erase((0, 0, 0, 0), 5)
 

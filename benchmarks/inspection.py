@@ -18,13 +18,14 @@ from numpy.typing import NDArray
 from benchmarks.cases import spread
 from benchmarks.targets import MET, MISSED
 from ramtek_emu import Ramtek9300, instructions
-from ramtek_emu.inspection.histories import finished, writes_to_pixel
+from ramtek_emu.inspection.histories import finished, history_of
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.stream import Stream
+from ramtek_emu.memory.scan_orders import Window
 
 MILLIONS = (1, 10)
 JUMPS = 200
-PIXEL = 200, 300
+PIXEL = Window(300, 200, 300, 200)
 BOUNDS = {"MB of states a million words": 64.0, "longest jump ms": 50.0, "history": 1.5}
 """A history is bounded by its ratio to a plain run."""
 
@@ -87,7 +88,7 @@ def figures(count: int, jumps: int = JUMPS) -> dict[str, float]:
     prepared = processor_seconds(prepare)
     numbers = np.random.default_rng(1978).integers(0, len(stream) + 1, jumps).tolist()
     seconds = [processor_seconds(jump_to(number)) for number in numbers]
-    history = processor_seconds(lambda: finished(writes_to_pixel(replay, *PIXEL, len(stream))))
+    history = processor_seconds(lambda: finished(history_of(replay, PIXEL, len(stream))))
     return {
         "instructions": len(stream),
         "plain run s": plain,

@@ -1,4 +1,4 @@
-/* A host of a display at a Unix socket: draws a box, reads a pixel back, and resets the display.
+/* A host of a display at a Unix socket: draws a box, and reads a pixel back.
    cc -o ramtek_client examples/ramtek_client.c && ./ramtek_client /tmp/display */
 #include <err.h>
 #include <stdint.h>
@@ -19,7 +19,7 @@ static void write_words(int display, const uint16_t *words, size_t count)
         err(1, "send");
 }
 
-/* Receive one packet of replies, and return the number of words: 0 is a mark, or the end. */
+/* Receive one packet of replies, and return the number of words: 0 is the end. */
 static size_t read_words(int display, uint16_t *words)
 {
     uint8_t packet[2 * MOST_WORDS];
@@ -31,18 +31,11 @@ static size_t read_words(int display, uint16_t *words)
     return length / 2;
 }
 
-static unsigned pixel(int display)
-{
-    static const uint16_t ask[] = {0x0B03, 0x0040, 150, 120, 150, 120, 2}; /* RI of one pixel */
-    uint16_t reply[MOST_WORDS];
-    write_words(display, ask, 7);
-    return read_words(display, reply) == 1 ? reply[0] : 0xFFFF;
-}
-
 int main(int argc, char **argv)
 {
     /* LAM of entry 5, and ERS BK FORE WIN: at power-on all entries are black. */
     static const uint16_t box[] = {0x0300, 10, 4, 0x4646, 0x00EB, 0x0912, 0x0042, 5, 100, 100, 199, 149};
+    static const uint16_t ask[] = {0x0B03, 0x0040, 150, 120, 150, 120, 2}; /* RI of one pixel */
     uint16_t reply[MOST_WORDS];
     struct sockaddr_un place = {.sun_family = AF_UNIX};
     int display = socket(AF_UNIX, SOCK_SEQPACKET, 0);
@@ -50,11 +43,10 @@ int main(int argc, char **argv)
     if (connect(display, (struct sockaddr *)&place, sizeof place) < 0)
         err(1, "connect");
     write_words(display, box, 12);
-    printf("the pixel is %u\n", pixel(display));
-    write_words(display, box, 0); /* An empty packet asks for a hard reset, and is the answer. */
-    if (read_words(display, reply) != 0)
-        errx(1, "the display must answer a reset");
-    printf("after a reset it is %u\n", pixel(display));
+    write_words(display, ask, 7);
+    if (read_words(display, reply) != 1)
+        errx(1, "the display must reply with a word");
+    printf("the pixel is %u\n", reply[0]);
     shutdown(display, SHUT_WR); /* When all is executed, the display ends, too. */
     return read_words(display, reply) != 0;
 }

@@ -24,7 +24,7 @@ What is **not** modeled
 
 The parts of the package, each of which uses only those before it: the basic modules (errors, arrays, checks,
 timing, configuration, writing, png, command_line), instruction_set, memory, drawing, video, processor,
-instructions, display, host, monitor, snapshot, inspection, commands.
+instructions, display, host, monitor, conformance, snapshot, inspection, commands.
 
 The sources are named by keys, such as LIN for Linton's C library of 1978. docs/SOURCES.md lists them with
 their repositories, revisions and files.
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from typing import Final
 
     __version__: str
+    from ramtek_emu.configuration import FAMILY as FAMILY
     from ramtek_emu.configuration import GMR_9300 as GMR_9300
     from ramtek_emu.configuration import JPL_9460 as JPL_9460
     from ramtek_emu.configuration import NCAR_9460 as NCAR_9460
@@ -73,6 +74,7 @@ _HOME: Final = {
     "Configuration": "configuration",
     "ConfigurationError": "errors",
     "EntryFormat": "configuration",
+    "FAMILY": "configuration",
     "GMR_9300": "configuration",
     "HostPort": "host.port",
     "InstructionError": "errors",

@@ -1,13 +1,9 @@
-"""Configuration: the sizes and formats of a display, and the four displays that the sources describe.
-
->>> GMR_9300.elements, GMR_9300.lines, GMR_9300.largest_word
-(640, 480, 1023)
-"""
+"""Configuration: the sizes and formats of a display, and the displays that the sources describe."""
 
 from __future__ import annotations
 
 import difflib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from operator import index
 from typing import Final
@@ -24,22 +20,11 @@ class EntryFormat(Enum):
     WORD_12 = "one word an entry: red << 8 | green << 4 | blue, four bits each"
     """Hardware: LIN, BTL."""
 
-    def __repr__(self) -> str:
-        return f"EntryFormat.{self.name}"
 
-
-SIZES: Final = (
-    "elements", "lines", "planes", "visible_elements", "visible_lines", "entries", "cursors",
-)  # fmt: skip
-"""The fields of a configuration that are whole numbers."""
-KINDS: Final[dict[str, tuple[tuple[type, ...], str]]] = {
-    "name": ((str,), "a str"),
-    "entry_format": ((EntryFormat,), "an EntryFormat"),
-    "extended": ((bool,), "True or False"),
-    "monochrome": ((bool,), "True or False"),
-    "timing": ((Timing, type(None)), "a Timing or None"),
-}
-"""The types of the other fields, and the words for them in errors."""
+KINDS: Final = {
+    "name": str, "entry_format": EntryFormat, "extended": bool, "monochrome": bool, "timing": Timing | None,
+}  # fmt: skip
+"""The types of the fields of a configuration that are no whole numbers."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,35 +48,29 @@ class Configuration:
     """How long everything takes; None means that no time passes."""
 
     def __post_init__(self) -> None:
-        for name, (kinds, phrase) in KINDS.items():
-            if not isinstance(getattr(self, name), kinds):
+        for name, kind in KINDS.items():
+            if not isinstance(getattr(self, name), kind):
+                words = getattr(kind, "__name__", "Timing or None")
                 raise ConfigurationError(
-                    f"{name} must be {phrase}, not {getattr(self, name)!r} "
-                    f"(configuration {self.name!r}); choose another value"
+                    f"{name} of a display must be {words}, not {getattr(self, name)!r}; choose another value"
                 )
-        for name in SIZES:
+        limits = {"elements": (1, 4096), "lines": (1, 4096), "planes": (1, 16), "cursors": (0, 8)}
+        limits |= {"visible_elements": (1, self.elements), "visible_lines": (1, self.lines)}
+        limits["entries"] = (256, 4096)
+        for name, (least, most) in limits.items():
+            size = getattr(self, name)
+            if size is None and name in ("visible_elements", "visible_lines"):
+                continue
             # Sizes may be numbers of numpy.
-            value = getattr(self, name)
-            if not isinstance(value, bool) and hasattr(value, "__index__"):
-                object.__setattr__(self, name, index(value))
-        limits = {
-            "elements": (self.elements, 1, 4096),
-            "lines": (self.lines, 1, 4096),
-            "planes": (self.planes, 1, 16),
-            "visible_elements": (self.shown_elements, 1, self.elements),
-            "visible_lines": (self.shown_lines, 1, self.lines),
-            "cursors": (self.cursors, 0, 8),
-        }
-        for name, (value, least, most) in limits.items():
-            if type(value) is not int or not least <= value <= most:
+            if isinstance(size, bool) or not hasattr(size, "__index__") or not least <= size <= most:
                 raise ConfigurationError(
-                    f"{name} must be a whole number from {least} to {most}, not {value!r} "
-                    f"(configuration {self.name!r}); choose another size"
+                    f"{name} of {self.name} must be a whole number from {least} to {most}, not {size!r}; "
+                    "choose another size"
                 )
-        if type(self.entries) is not int or self.entries not in (256, 512, 1024, 2048, 4096):
+            object.__setattr__(self, name, index(size))
+        if self.entries & (self.entries - 1):
             raise ConfigurationError(
-                f"entries must be 256, 512, 1024, 2048 or 4096, not {self.entries!r} "
-                f"(configuration {self.name!r}); choose one of them"
+                f"entries of {self.name} must be a power of 2, not {self.entries}; choose another size"
             )
 
     @property
@@ -110,14 +89,19 @@ class Configuration:
         return (1 << self.planes) - 1
 
 
-GMR_9300: Final = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
-"""The display of the paper.
+GMR_9300: Final = Configuration(name="GMR_9300", elements=640, lines=480, planes=10, extended=False)
+"""The display of the paper. It takes what a 9300 takes.
 
 Hardware: GM, 640 x 480 words of ten bits, one parallel table of 1024 x 24 bits.
 Assumed: the table takes the word pairs of the 9460, the same family and the same number of entries; no source
 shows a 9300 with a 24-bit table. It has two cursors, as Princeton's.
-Departs: the 9300 had no second operand flag word and no 9460 instructions; this display takes them, so that
-the programs of the whole family run on it. PRINCETON_9300 is the strict one.
+"""
+
+FAMILY: Final = Configuration(name="FAMILY", elements=640, lines=480, planes=10)
+"""The display of the paper, with the second operand flag word and the instructions of the 9400 and 9460.
+
+Departs: no display was built so. It runs the programs of the whole family with one size, ten planes and a
+table of 24 bits.
 """
 
 PRINCETON_9300: Final = Configuration(
@@ -131,6 +115,7 @@ PRINCETON_9300: Final = Configuration(
 """The RM-9300 of Princeton University.
 
 Hardware: LIN and PRG, 640 x 512 memory, 1024 entries of 12 bits, words of ten bits (cmap 3), cursors 0 and 1.
+Its monitor was black and white (PRG introdoc); `princeton-9300-monochrome` is this display with such a one.
 Assumed: all 640 elements are shown; the programs kept to 620, probably because the monitor cut the rest.
 """
 
@@ -149,35 +134,30 @@ Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as
 """
 
 CONFIGURATIONS: Final = {
-    configuration.name: configuration for configuration in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)
+    configuration.name: configuration
+    for configuration in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460, FAMILY)
 }
-"""The four displays above, by name."""
+"""The displays above, by name."""
 
 
-def configuration_named(name: str) -> Configuration:
-    """One of the four displays by its name, in upper or lower case; ConfigurationError lists all names.
+def checked_configuration(name: Configuration | str) -> Configuration:
+    """One of the displays by its name, in upper or lower case; a configuration is returned as it is.
 
-    >>> configuration_named("ncar-9460").elements
-    1280
+    A name with -monochrome after it is the display with a black-and-white monitor. ConfigurationError lists
+    the names.
+
+    >>> checked_configuration("princeton-9300-monochrome").monochrome
+    True
     """
-    asked = name.upper().replace("-", "_")
-    if asked not in CONFIGURATIONS:
-        near = [candidate for candidate in CONFIGURATIONS if candidate.startswith(asked)]
-        near = near or difflib.get_close_matches(asked, CONFIGURATIONS, n=1)
-        advice = f"did you mean {near[0]}?" if asked and near else "choose one of them"
+    if isinstance(name, Configuration):
+        return name
+    asked = str(name).upper().replace("-", "_")
+    display = asked.removesuffix("_MONOCHROME")
+    if display not in CONFIGURATIONS:
+        near = difflib.get_close_matches(display, CONFIGURATIONS, n=1, cutoff=0.5)
+        advice = f"did you mean {near[0]}?" if near else "choose one of them"
         raise ConfigurationError(
             f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
         )
-    return CONFIGURATIONS[asked]
-
-
-def checked_configuration(configuration: object) -> Configuration:
-    """The configuration itself, or the display of that name; ConfigurationError otherwise."""
-    if isinstance(configuration, str):
-        return configuration_named(configuration)
-    if not isinstance(configuration, Configuration):
-        raise ConfigurationError(
-            f"a configuration must be a Configuration or the name of one, not {configuration!r}; "
-            f"choose one of {', '.join(sorted(CONFIGURATIONS))}"
-        )
-    return configuration
+    configuration = CONFIGURATIONS[display]
+    return configuration if display == asked else replace(configuration, monochrome=True)

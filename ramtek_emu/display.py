@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from os import PathLike
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ramtek_emu.checks import checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration, checked_configuration
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, ILLEGAL
 from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
@@ -24,16 +24,6 @@ from ramtek_emu.processor import cursor_executors, drawing_executors, environmen
 from ramtek_emu.processor.processor import Executors, Pauses, Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
-
-
-class Part(Protocol):
-    """A part of a display."""
-
-    def state(self) -> dict[str, Any]:
-        """What the part is, by name."""
-
-    def restore(self, state: dict[str, Any]) -> None:
-        """Become as another part was."""
 
 
 class Ramtek9300:
@@ -72,8 +62,8 @@ class Ramtek9300:
     def state(self) -> dict[str, dict[str, Any]]:
         """All that the display is, by part and name: numbers, tuples, lists, dictionaries and arrays.
 
-        The arrays are the memories themselves, so copy what you keep. The words of an incomplete instruction
-        and unread replies belong to a host and are left out, and so are the counts of words and resets.
+        The words of an incomplete instruction and unread replies belong to a host and are left out. So are
+        the counts of words and resets.
         """
         return {name: part.state() for name, part in self._parts().items()}
 
@@ -83,9 +73,18 @@ class Ramtek9300:
         for name, part in self._parts().items():
             part.restore(state[name])
 
-    def _parts(self) -> dict[str, Part]:
+    def __reduce__(self) -> tuple[Any, ...]:
+        beside = self.resets, self.words_received, self.decoder, self.processor.replies
+        return type(self), (self.configuration,), (self.state(), beside)
+
+    def __setstate__(self, saved: tuple[Any, ...]) -> None:
+        state, beside = saved
+        self.restore(state)
+        self.resets, self.words_received, self.decoder, self.processor.replies = beside
+
+    def _parts(self) -> dict[str, Any]:
         """The parts that have a state; the beam paints the monitor image, so it comes first."""
-        timed: dict[str, Part] = {} if self.beam is None else {"beam": self.beam, "scan_out": self.scan_out}
+        timed: dict[str, Any] = {} if self.beam is None else {"beam": self.beam, "scan_out": self.scan_out}
         return {
             "frame_buffer": self.frame_buffer,
             "lookup_table": self.lookup_table,
@@ -105,7 +104,8 @@ class Ramtek9300:
 
         A long instruction is executed in slices of a few milliseconds, with pauses between them. Such a pause
         yields the same number as the pause before the instruction. A reset during it abandons the rest of the
-        instruction. With a beam there are no such pauses.
+        instruction. With a beam, the instruction takes its time at the end: lines that the beam has passed
+        show the state before the instruction, all others the state after it.
         """
         stream = checked_stream(words)
         self.words_received += len(stream)
@@ -113,28 +113,31 @@ class Ramtek9300:
 
     def _take(self, stream: Words) -> Iterator[int]:
         executed = 0
-        for instruction in self.decoder.feed(stream, in_rows=self.beam is None):
+        for instruction in self.decoder.feed(stream):
             # A reset during the pause feeds the decoder, too.
             used = self.decoder.used
             if self.beam is None:
                 pauses = execute_in_slices(self.processor, instruction)
-                if pauses is not None:
-                    resets = self.resets
-                    for _ in pauses:
-                        yield executed
-                        if self.resets != resets:
-                            break
             else:
-                self._execute_in_time(instruction, self.beam)
+                pauses = self._execute_in_time(instruction, self.beam)
+            if pauses is not None:
+                resets = self.resets
+                for _ in pauses:
+                    yield executed
+                    if self.resets != resets:
+                        break
             executed = used
             yield used
 
-    def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
-        # Lines that the beam has passed show the state before the instruction, all others the state after it.
-        self.scan_out.follow_beam()
+    def _execute_in_time(self, instruction: Instruction, beam: Beam) -> Pauses:
+        yield from self.scan_out.follow_beam()
         written = self.frame_buffer.written
-        execute(self.processor, instruction)
-        self.scan_out.follow_beam()
+        yield from execute_in_slices(self.processor, instruction) or ()
+        yield from self.scan_out.follow_beam()
+        if instruction.format is ILLEGAL:
+            # Assumed: the words of a row are read one by one; so its time does not depend on cuts.
+            beam.charge(len(instruction.data), 0, len(instruction.data))
+            return
         words = 1 + sum(map(len, instruction.operands.values())) + len(instruction.data)
         beam.charge(words, self.frame_buffer.written - written)
 

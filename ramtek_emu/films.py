@@ -4,7 +4,6 @@
 |---|---|---|
 | .webp | animated WebP | lossless |
 | .apng | animated PNG | lossless |
-| .gif | animated GIF | 256 a field; others become the nearest of these |
 | {number:04}.png | a numbered PNG for each field | lossless |
 
 A field after the first is stored as the rectangle that differs from the field before. Pillow encodes the
@@ -12,7 +11,7 @@ fields; the films are put together here, because Pillow keeps all fields in memo
 of fields need not be known before the last. `TimedFilm` takes fields with the times at which they were shown.
 
 Measured for 640 x 480 fields of the coupe, a turn and a fade of its paint: WebP takes 9 ms and 30 to 51 KB a
-field, an animated PNG 10 ms and 61 to 72 KB, a GIF 15 ms and 24 to 30 KB.
+field, an animated PNG 10 ms and 61 to 72 KB.
 Measured and rejected: slower methods of WebP, which save a fifth to a quarter of the bytes for three to seven
 times the time; WebP whose every field is encoded by itself, which are twice as large.
 """
@@ -29,21 +28,18 @@ from os import PathLike, fspath
 from pathlib import Path
 from struct import pack, unpack_from
 from typing import Final, NamedTuple
-from zlib import crc32
 
 import numpy as np
 from PIL import Image
 
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError
-from ramtek_emu.png import png_bytes
+from ramtek_emu.png import SIGNATURE, chunk, chunks, png_bytes
 from ramtek_emu.writing import Output, refusal, refuse_output, write_atomically
 
 LEAST_RATE: Final = 0.1
 MOST_RATE: Final = 100.0
-MOST_GIF_RATE: Final = 50.0
-"""Limit: fields per second. GIF counts hundredths of a second, and browsers slow down fields of less than
-two."""
+"""Limit: fields per second."""
 
 MOST_FIELDS: Final = 100_000
 """Limit: fields of a film."""
@@ -55,20 +51,6 @@ NUMBER: Final = re.compile(r"\{number(?::0?([0-9]{1,2}))?\}")
 """The number of a picture in a pattern of names, with its number of digits."""
 
 
-class Loss(NamedTuple):
-    """How many fields of a film lost colors, and the largest difference of a component, 0 to 255."""
-
-    fields: int = 0
-    largest: int = 0
-
-    def sentence(self, frames: int) -> str:
-        """The loss as a sentence about a film of so many frames."""
-        return (
-            f"{self.fields:,} of {frames:,} frames lost colors, by at most {self.largest} of 255;"
-            " .webp and .apng lose none"
-        )
-
-
 def write_film(
     path: str | PathLike[str],
     fields: Iterable[Colors],
@@ -76,8 +58,8 @@ def write_film(
     fields_per_second: float,
     loop: bool = True,
     overwrite: bool = False,
-) -> Loss:
-    """Write (lines, elements, 3) uint8 fields to a film in the format of its suffix; returns what was lost.
+) -> None:
+    """Write (lines, elements, 3) uint8 fields to a film in the format of its suffix.
 
     `fields` are taken one by one. With `loop`, the film begins again at its end. A WebP stores equal
     consecutive fields once, with a longer duration. `path` may be a pattern of numbered pictures, such as
@@ -93,11 +75,10 @@ def write_film(
             write_atomically(
                 numbered(fspath(path), number), png_bytes(field), overwrite=overwrite, sync=False
             )
-        return Loss()
+        return
     with Output(path, overwrite=overwrite) as output:
-        loss = FORMATS[suffix](output, _alike(fields), fields_per_second, loop)
+        FORMATS[suffix](output, _alike(fields), fields_per_second, loop)
         output.keep()
-    return loss
 
 
 def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: bool = False) -> None:
@@ -107,10 +88,9 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
         raise OutputError(
             f"a film must end in {', '.join(FORMATS)}, or in .png with a number, not in {suffix!r}; rename it"
         )
-    most = MOST_GIF_RATE if suffix == ".gif" else MOST_RATE
-    if not LEAST_RATE <= fields_per_second <= most:
+    if not LEAST_RATE <= fields_per_second <= MOST_RATE:
         raise ColorsError(
-            f"a film must have {LEAST_RATE:g} to {most:g} fields per second, not {fields_per_second:g};"
+            f"a film must have {LEAST_RATE:g} to {MOST_RATE:g} fields per second, not {fields_per_second:g};"
             " choose another rate"
         )
     if suffix == PICTURES:
@@ -180,13 +160,13 @@ def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
         raise ColorsError("a film must have at least one field, not none; make a field")
 
 
-def ticks(number: int, fields_per_second: float, per_second: int) -> int:
+def milliseconds_of(number: int, fields_per_second: float) -> int:
     """The duration of a field, counted from 0, so that the film as a whole has the right duration.
 
-    >>> [ticks(number, 24, 100) for number in range(6)]
-    [4, 4, 5, 4, 4, 4]
+    >>> [milliseconds_of(number, 24) for number in range(6)]
+    [42, 41, 42, 42, 41, 42]
     """
-    end, start = (math.floor(per_second * at / fields_per_second + 0.5) for at in (number + 1, number))
+    end, start = (math.floor(1000 * at / fields_per_second + 0.5) for at in (number + 1, number))
     return end - start
 
 
@@ -231,7 +211,7 @@ LARGEST_RIFF: Final = (1 << 32) - 10
 """Limit: bytes of a WebP after its first eight."""
 
 
-def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> Loss:
+def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> None:
     timed = _differing(fields, rate)
     group = [next(timed)]
     lines, elements, _ = group[0].field.shape
@@ -258,7 +238,6 @@ def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: boo
         group = list(islice(timed, 1))
     output.write_at(4, pack("<I", written))
     output.write_at(20, bytes([flags]))
-    return Loss()
 
 
 ANIMATED: Final = 0x02
@@ -282,7 +261,7 @@ def _differing(fields: Iterator[Colors], rate: float) -> Iterator[_TimedField]:
             yield _TimedField(shown, duration)
             duration = 0
         shown = field
-        duration += ticks(number, rate, 1000)
+        duration += milliseconds_of(number, rate)
     if shown is not None:
         yield _TimedField(shown, duration)
 
@@ -294,14 +273,14 @@ def _webp_fields(group: list[_TimedField], size: bytes) -> tuple[bytes, int]:
     buffer = BytesIO()
     how = {"duration": durations, "lossless": True, "quality": 50, "method": 0}
     first.save(buffer, "WEBP", save_all=True, append_images=others, **how)
-    chunks = list(_riff_chunks(buffer.getvalue()))
+    parts = list(_riff_chunks(buffer.getvalue()))
     if others:
-        fields = b"".join(_riff_chunk(*chunk) for chunk in chunks if chunk[0] == b"ANMF")
-        return fields, dict(chunks)[b"VP8X"][0] & HAS_ALPHA
+        fields = b"".join(_riff_chunk(*part) for part in parts if part[0] == b"ANMF")
+        return fields, dict(parts)[b"VP8X"][0] & HAS_ALPHA
     # Pillow writes a still picture, whose chunk is the data of the field.
-    (chunk,) = chunks
+    (part,) = parts
     place = bytes(6) + size + pack("<I", durations[0])[:3] + bytes(1)
-    return _riff_chunk(b"ANMF", place + _riff_chunk(*chunk)), 0
+    return _riff_chunk(b"ANMF", place + _riff_chunk(*part)), 0
 
 
 def _riff_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
@@ -346,17 +325,17 @@ class AnimatedPng:
     def add(self, field: Colors, milliseconds: int) -> None:
         """Add a (lines, elements, 3) uint8 field of the size of the others, with its duration."""
         area = differing_area(field, self._before)
-        chunks = list(_png_chunks(area.of(field)))
+        parts = list(chunks(png_bytes(area.of(field), PNG_LEVEL)))
         if self._before is None:
-            self._write(PNG_SIGNATURE + _chunk(*chunks[0]) + self.count())
+            self._write(SIGNATURE + chunk(*parts[0]) + self.count())
         shape = (area.elements, area.lines, area.left, area.top)
         unit = next((unit for unit in UNITS if milliseconds * unit < 65_535_500), 1)
         duration = min(65_535, milliseconds * unit // 1000)
         # Neither dispose of the field before nor blend with it: the rectangle is replaced.
         self._add_chunk(b"fcTL", pack(">IIIIHHBB", *shape, duration, unit, 0, 0))
-        for kind, data in chunks:
+        for kind, data in parts:
             if kind == b"IDAT" and self._before is None:
-                self._write(_chunk(kind, data))
+                self._write(chunk(kind, data))
             elif kind == b"IDAT":
                 self._add_chunk(b"fdAT", data)
         self._before = field
@@ -364,92 +343,27 @@ class AnimatedPng:
 
     def _add_chunk(self, kind: bytes, data: bytes) -> None:
         """Write a chunk with its number in the sequence."""
-        self._write(_chunk(kind, pack(">I", self._sequence) + data))
+        self._write(chunk(kind, pack(">I", self._sequence) + data))
         self._sequence += 1
 
     def count(self) -> bytes:
         """The chunk that counts the fields; it belongs at COUNT_PLACE."""
-        return _chunk(b"acTL", pack(">II", self.fields, 0 if self._loop else 1))
+        return chunk(b"acTL", pack(">II", self.fields, 0 if self._loop else 1))
 
     def end(self) -> None:
         """Write the end of the file; the count must still be written."""
-        self._write(_chunk(b"IEND", b""))
+        self._write(chunk(b"IEND", b""))
 
 
-def _write_apng(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> Loss:
+def _write_apng(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> None:
     film = AnimatedPng(output.write, loop)
     for number, field in enumerate(fields):
-        film.add(field, ticks(number, rate, 1000))
+        film.add(field, milliseconds_of(number, rate))
     film.end()
     output.write_at(AnimatedPng.COUNT_PLACE, film.count())
-    return Loss()
 
 
-PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
-
-
-def _png_chunks(field: Colors) -> Iterator[tuple[bytes, bytes]]:
-    """The kinds and data of the chunks of a field as a PNG."""
-    buffer = BytesIO()
-    Image.fromarray(np.ascontiguousarray(field)).save(buffer, "PNG", compress_level=PNG_LEVEL)
-    data, place = buffer.getvalue(), len(PNG_SIGNATURE)
-    while place < len(data):
-        length, kind = unpack_from(">I4s", data, place)
-        yield kind, data[place + 8 : place + 8 + length]
-        place += 12 + length
-
-
-def _chunk(kind: bytes, data: bytes) -> bytes:
-    return pack(">I", len(data)) + kind + data + pack(">I", crc32(data, crc32(kind)))
-
-
-# Animated GIF, by its specification of 1989: each field has a color table of its own.
-
-REPEAT: Final = b"\x21\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00"
-"""The extension that repeats the film without end."""
-
-LOCAL_TABLE: Final = 0x80
-
-
-def _write_gif(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> Loss:
-    before, shown = None, None
-    write, loss = output.write, Loss()
-    for number, field in enumerate(fields):
-        area = differing_area(field, before)
-        # Measured: these 256 colors are off by at most 7, the colors of a median cut by up to 43.
-        image = Image.fromarray(np.ascontiguousarray(area.of(field))).quantize(
-            256, Image.Quantize.MAXCOVERAGE
-        )
-        if shown is None:
-            lines, elements, _ = field.shape
-            write(b"GIF89a" + pack("<HHBBB", elements, lines, 0, 0, 0) + (REPEAT if loop else b""))
-            shown = np.empty_like(field)
-        area.of(shown)[:] = np.asarray(image.convert("RGB"))
-        largest = int((np.maximum(field, shown) - np.minimum(field, shown)).max())
-        loss = Loss(loss.fields + (largest > 0), max(loss.largest, largest))
-        table, data = _gif_parts(image)
-        bits = (len(table) // 3).bit_length() - 2
-        # Leave the field before in place.
-        write(b"\x21\xf9\x04" + pack("<BHB", 1 << 2, ticks(number, rate, 100), 0) + b"\x00")
-        corner = (area.left, area.top, area.elements, area.lines)
-        write(b"\x2c" + pack("<HHHHB", *corner, LOCAL_TABLE | bits) + table + data)
-        before = field
-    write(b"\x3b")
-    return loss
-
-
-def _gif_parts(image: Image.Image) -> tuple[bytes, bytes]:
-    """The color table of an image with a palette, and its compressed pixels, as in a GIF."""
-    buffer = BytesIO()
-    image.save(buffer, "GIF", interlace=0)
-    data = buffer.getvalue()
-    # Pillow writes a header of 13 bytes, a global table, 10 bytes about the image, and its pixels.
-    end = 13 + (3 << (data[10] & 7) + 1)
-    assert data[end] == 0x2C
-    return data[13:end], data[end + 10 : -1]
-
-
-FORMATS: Final = {".webp": _write_webp, ".apng": _write_apng, ".gif": _write_gif}
+FORMATS: Final = {".webp": _write_webp, ".apng": _write_apng}
 """The function that writes each format, by the suffix."""
 
 PICTURES: Final = ".png"

@@ -10,8 +10,7 @@ and read the lookup table. An operand that is left out keeps the value that an e
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
-from struct import Struct
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -20,15 +19,13 @@ from ramtek_emu.arrays import Words
 from ramtek_emu.checks import (
     checked_colors,
     checked_coordinate,
-    checked_cursor,
+    checked_factors,
     checked_number,
-    checked_size,
     checked_stream,
-    checked_table_address,
     checked_words,
-    is_whole,
     whole_numbers,
 )
+from ramtek_emu.drawing.vectors import points
 from ramtek_emu.errors import InstructionError, WordsError
 from ramtek_emu.instruction_set.instruction import (
     MOST_BYTES,
@@ -39,6 +36,7 @@ from ramtek_emu.instruction_set.instruction import (
     normal,
 )
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, Flags
+from ramtek_emu.memory.scan_orders import Window
 
 
 def concatenate(*parts: Words) -> Words:
@@ -67,12 +65,13 @@ def set_parameters(**operands: OperandValue | None) -> Words:
 
 
 def zoom(across: int = 1, down: int | None = None) -> Words:
-    """ZOOM: show each pixel `across` elements wide and `down` lines high (1 to 16; None is `across`)."""
-    factors = (across, across if down is None else down)
-    if not all(is_whole(factor) and 1 <= factor <= 16 for factor in factors):
-        raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
-    word = int(factors[1]) - 1 << 8 | int(factors[0]) - 1
-    return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, word), np.uint16)
+    """ZOOM: show each pixel `across` elements wide and `down` lines high (1 to 16; None is `across`).
+
+    Only the 9400 and the 9460 have it.
+    """
+    factors = across if down is None else (across, down)
+    across, down = checked_factors(factors, "a zoom factor", "choose another")
+    return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, (down - 1) << 8 | (across - 1)), np.uint16)
 
 
 def erase(window: Sequence[int] | None = None, word: int | None = None) -> Words:
@@ -90,30 +89,8 @@ def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) ->
     left, top = (checked_coordinate(place, "the words' corner") for place in (left, top))
     image = checked_words(words, planes)
     lines, elements = image.shape
-    flat = np.ascontiguousarray(image).reshape(-1)
-    most = MOST_BYTES // 2
-    if elements <= most:
-        most -= most % elements
-    starts = range(0, flat.size, most)
-    head = image_head(left, top, left + elements - 1, top + lines - 1, 2 * min(most, flat.size))
-    stream = np.empty(flat.size + len(head) + 2 * (len(starts) - 1), np.uint16)
-    place = 0
-    for start in starts:
-        part = flat[start : start + most]
-        first = head if start == 0 else (FORMAT_OF_NAME["WI"].opcode << 8 | Flags.DATA, 2 * part.size)
-        stream[place : place + len(first)] = first
-        place += len(first)
-        stream[place : place + part.size] = part
-        place += part.size
-    return stream
-
-
-@lru_cache(maxsize=64, typed=True)
-def image_head(left: int, top: int, right: int, bottom: int, length: int) -> Words:
-    """The words of a WI with a window, up to its data."""
-    head = encode(normal("WI", {"window": (left, top, right, bottom)}, length=length))
-    head.flags.writeable = False
-    return head
+    window = (left, top, left + elements - 1, top + lines - 1)
+    return in_instructions("WI", {"window": window}, image.reshape(-1), elements)
 
 
 def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple[Words, int]]:
@@ -124,8 +101,6 @@ def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple
         for count, name in ((elements, "elements"), (lines, "lines"))
     )
     most = MOST_BYTES // 2
-    if elements <= most:
-        most -= most % elements
     window: tuple[int, ...] | None = (left, top, left + elements - 1, top + lines - 1)
     for start in range(0, elements * lines, most):
         count = min(most, elements * lines - start)
@@ -133,74 +108,92 @@ def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple
         window = None
 
 
-def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> Words:
-    """CIRC: draw the outlines of (n, 3) circles (element and line of the center, radius)."""
-    numbers = whole_numbers(circles, "circles", WordsError)
-    if numbers.ndim != 2 or numbers.shape[1] != 3 or not 0 < len(numbers) <= MOST_BYTES // 6:
-        raise WordsError(
-            f"circles must be an (n, 3) array of element, line and radius with 1 to {MOST_BYTES // 6} rows, "
-            f"not of shape {numbers.shape}; reshape or divide it"
-        )
-    least, most = numbers.min(axis=0), numbers.max(axis=0)
-    if (least < (-0x8000, -0x8000, 0)).any() or (most > 0xFFFF).any():
-        raise WordsError(
-            "a circle must have a center within -32768 to 65535 and a radius within 0 to 65535, not "
-            f"{least.tolist()} to {most.tolist()}; leave out what lies farther away"
-        )
-    words = (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
-    return encode(normal("CIRC", {"foreground": word}, words.reshape(-1)))
+def write_circles(circles: object, word: int | None = None) -> Words:
+    """CIRC: draw the outlines of (n, 3) circles (element and line of the center, radius).
+
+    Circles that do not fit in one instruction continue in the next. Only the 9400 and the 9460 have it.
+    WordsError if the circles are not such an array.
+    """
+    words = checked_places(circles, "circles", "circle", ("element", "line", "radius"))
+    return in_instructions("CIRC", {"foreground": word}, words.reshape(-1), 3)
 
 
 def fill(element: int, line: int, word: int | None = None) -> Words:
-    """FILL: fill the area around a pixel with the foreground, up to pixels that have it already."""
+    """FILL: fill the area around a pixel with the foreground, up to pixels that have it already.
+
+    Only the 9400 and the 9460 have it.
+    """
     operands: dict[str, OperandValue | None] = {"foreground": word, "start": (element, line)}
     return encode(normal("FILL", operands, np.zeros(1, np.uint16)))
 
 
-def write_vectors(
-    vertices: object,
-    word: int | None = None,
-    start: Sequence[int] | None = None,
-    window: Sequence[int] | None = None,
-) -> Words:
+def write_vectors(vertices: object, word: int | None = None, start: Sequence[int] | None = None) -> Words:
     """WVL: draw the lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
 
     Vertices that do not fit in one instruction continue in the next. The word stays set as the foreground.
-    Lines are drawn with the texture, and are clipped at the write window, never at the window of images and
-    text. If other programs drew before, give `window` (left, top, right, bottom): it sets a texture without
-    gaps and the write window, which stays set and also clips images and text. Only the 9400 and the 9460 have
-    a texture and a write window. The mask is never set. WordsError if the vertices are not such an array.
+    Lines are clipped at the memory, never at the window of images and text. The 9400 and the 9460 draw with
+    the texture, and clip at the write window: if other programs drew before, set both with `set_parameters`.
+    The mask is never set. WordsError if the vertices are not such an array.
     """
     words = checked_places(vertices, "vertices", "vertex", ("element", "line"))
     if start is None:
         start = words[0].tolist()
         words = words[1:] if len(words) > 1 else words
-    return in_instructions("WVL", words, {**line_operands(word, window), "start": start})
+    return in_instructions("WVL", {"foreground": word, "start": start}, words.reshape(-1), 2)
 
 
-def write_segments(segments: object, word: int | None = None, window: Sequence[int] | None = None) -> Words:
-    """WVU: draw unlinked lines from (n, 4) segments (element, line of the start; element, line of the end).
+def in_instructions(name: str, operands: dict[str, OperandValue | None], data: Words, columns: int) -> Words:
+    """The instructions for data in rows of so many words; the first instruction sets the operands.
 
-    Segments that do not fit in one instruction continue in the next. The word and the window stay set, as
-    after `write_vectors`. WordsError if the segments are not such an array.
+    An instruction ends with a row, if one has room for a row.
+    """
+    most = MOST_BYTES // 2
+    most -= most % columns if columns < most else 0
+    first = encode(normal(name, operands, data[:most]))
+    rest = (encode(normal(name, {}, data[start : start + most])) for start in range(most, len(data), most))
+    return concatenate(first, *rest) if len(data) > most else first
+
+
+FEW_RUNS: Final = 8
+"""Up to this number of runs of linked lines, an instruction for each is faster than a raster."""
+
+
+def write_segments(segments: object, word: int | None = None) -> Words:
+    """WVL or WR: draw lines from (n, 4) segments (element, line of the start; element, line of the end).
+
+    A 9300 has an instruction for linked lines alone. So a few runs of linked segments are sent by WVL each.
+    Thousands of instructions would take long: instead, the same pixels are sent as a raster of one bit a
+    pixel, in the box around them, without elements and lines above 4095. The word stays set, and with a
+    raster the window and the scan order. WordsError if the segments are not such an array.
     """
     words = checked_places(segments, "segments", "segment", ("element", "line", "element", "line"))
-    return in_instructions("WVU", words, line_operands(word, window))
-
-
-def line_operands(word: int | None, window: Sequence[int] | None) -> dict[str, OperandValue | None]:
-    """The operands that lines need; with a window, the texture has no gaps."""
-    return {"foreground": word, "write_window": window, "texture": None if window is None else (0xFFFF, 0)}
-
-
-def in_instructions(name: str, rows: Words, operands: dict[str, OperandValue | None]) -> Words:
-    """The instructions for rows of coordinates; the first instruction sets the operands."""
-    most = MOST_BYTES // (2 * rows.shape[1])
+    breaks = np.flatnonzero((words[1:, :2] != words[:-1, 2:]).any(axis=1)) + 1
+    if len(breaks) < FEW_RUNS:
+        runs = [words[a:b] for a, b in pairwise((0, *breaks, len(words)))]
+        return concatenate(*(write_vectors(run[:, 2:], word, run[0, :2].tolist()) for run in runs))
+    ends = words.view(np.int16).astype(np.int64).reshape(-1, 2)
+    box = Window(*ends.min(axis=0).tolist(), *ends.max(axis=0).tolist())
+    box = box.intersection(Window(0, 0, 4095, 4095))
+    if box.is_empty:
+        return NO_WORDS
+    dots = np.zeros((box.height, box.width), np.bool_)
+    for elements, lines, _, _ in points(ends[::2], ends[1::2], box):
+        dots[lines - box.top, elements - box.left] = True
+    operands: dict[str, OperandValue | None] = {"foreground": word, "scan_order": 0}
+    most = MOST_BYTES * 8 // box.width
     parts = []
-    for first in range(0, len(rows), most):
-        parts.append(encode(normal(name, operands, rows[first : first + most].reshape(-1))))
-        operands = {}
+    for first in range(0, len(dots), most):
+        strip = dots[first : first + most]
+        top = box.top + first
+        operands["window"] = (box.left, top, box.right, top + len(strip) - 1)
+        data = np.packbits(strip).tobytes()
+        parts.append(encode(normal("WR", operands, packed(data), len(data), Flags.ADDITIVE)))
     return concatenate(*parts)
+
+
+def packed(data: bytes) -> Words:
+    """Bytes as words, the first byte high; a byte of 0 pads the last word."""
+    return np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
 
 
 def checked_places(values: object, things: str, thing: str, columns: tuple[str, ...]) -> Words:
@@ -211,10 +204,11 @@ def checked_places(values: object, things: str, thing: str, columns: tuple[str, 
             f"{things} must be an (n, {len(columns)}) array of {', '.join(columns[:-1])} and {columns[-1]} "
             f"with at least one row, not of shape {numbers.shape}; reshape it"
         )
-    if numbers.min() < -0x8000 or numbers.max() > 0xFFFF:
+    least = np.array([0 if column == "radius" else -0x8000 for column in columns])
+    if (numbers < least).any() or numbers.max() > 0xFFFF:
         raise WordsError(
-            f"a {thing} must be within -32768 to 65535, not {numbers.min()} to {numbers.max()}; "
-            "clip the lines first"
+            f"a {thing} must be within {least.tolist()} to 65535, not {numbers.min(axis=0).tolist()} to "
+            f"{numbers.max()}; clip it first"
         )
     return (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
 
@@ -239,7 +233,7 @@ def write_text(
             f"text must be a str or bytes, not {type(text).__name__}; write str() around it"
         )
     data = text.encode("ascii", "replace") if isinstance(text, str) else bytes(text)
-    across, down = checked_size(size)
+    across, down = checked_factors(size, "the size of text", "write it smaller")
     left, top = (checked_coordinate(place, "the corner of text") for place in (left, top))
     window = (left, top, left + 7 * across * max(1, len(data)) - 1, top + 9 * down - 1)
     operands: dict[str, OperandValue | None] = {
@@ -251,15 +245,19 @@ def write_text(
         "spacing": (0, 0),
         "scale": (down - 1) << 8 | (across - 1),
     }
-    packed = np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
-    return encode(normal("WT", operands, packed, len(data), Flags.ADDITIVE if transparent else 0))
+    return encode(normal("WT", operands, packed(data), len(data), Flags.ADDITIVE if transparent else 0))
+
+
+CURSOR: Final = ("a cursor's number", 0, 255, "choose one there is", InstructionError)
+TABLE_ADDRESS: Final = ("a table's address", 0, 0xFFFF, "count in words", InstructionError)
+"""The arguments of `checked_number`."""
 
 
 def write_cursor(
     number: int, element: int, line: int, *, visible: bool = True, blinking: bool = False
 ) -> Words:
     """WCSS: place a cursor on the screen, and show or hide it."""
-    number = checked_cursor(number)
+    number = checked_number(number, *CURSOR)
     element, line = (
         checked_number(place, f"a cursor's {name}", 0, most, "keep to the screen", InstructionError)
         for place, name, most in ((element, "element", 0x7FF), (line, "line", 0x3FF))
@@ -270,35 +268,23 @@ def write_cursor(
 
 def read_cursor(number: int) -> Words:
     """RCSS: ask for a cursor; then receive two words: element, and line with the state above ten bits."""
-    return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | checked_cursor(number)], np.uint16)
+    return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | checked_number(number, *CURSOR)], np.uint16)
 
 
-LOW_BYTE_FIRST: Final = np.dtype("<u2")
-THREE_WORDS: Final = Struct("<3H")
 LOAD: Final = FORMAT_OF_NAME["LAM"].opcode << 8
 """The instruction word of LAM for table 0."""
 
 
-def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
-    """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 24-bit format."""
-    checked = checked_colors(first, colors, entries)
-    data = checked.tobytes()
-    # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0.
-    memory = bytearray(6 + 4 * len(checked))
-    memory[6::4], memory[7::4], memory[8::4] = data[2::3], data[1::3], data[0::3]
-    memory[:6] = THREE_WORDS.pack(LOAD, 2 * int(first), 4 * len(checked))
-    return np.frombuffer(memory, LOW_BYTE_FIRST)
+def load_entries(first: int, colors: object, entries: int = 1024, short: bool = False) -> Words:
+    """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 24-bit format.
 
-
-def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words:
-    """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 12-bit format.
-
-    Only the upper four bits of each component are sent.
+    With `short=True` it is the 12-bit format, which has the upper four bits of each component.
     """
-    checked = checked_colors(first, colors, entries)
-    red, green, blue = checked.astype(np.uint16).T >> 4
-    head = np.array((LOAD, int(first), 2 * len(checked)), np.uint16)
-    return np.concatenate((head, red << 8 | green << 4 | blue))
+    red, green, blue = checked_colors(first, colors, entries).astype(np.uint16).T
+    pairs = np.stack((green << 8 | blue, red), axis=1).reshape(-1)
+    data = red >> 4 << 8 | green & 0xF0 | blue >> 4 if short else pairs
+    address = int(first) if short else 2 * int(first)
+    return np.concatenate((np.array((LOAD, address, 2 * len(data)), np.uint16), data))
 
 
 def park_table(address: int = 0) -> Words:
@@ -306,7 +292,7 @@ def park_table(address: int = 0) -> Words:
 
     Hardware: LIN, JPL, NCAR send it after a load; it matters with fewer planes than address bits.
     """
-    return np.array((LOAD, checked_table_address(address), 0), np.uint16)
+    return np.array((LOAD, checked_number(address, *TABLE_ADDRESS), 0), np.uint16)
 
 
 def read_entries(address: int = 0, words: int = 2048) -> Words:
@@ -314,4 +300,6 @@ def read_entries(address: int = 0, words: int = 2048) -> Words:
     words = checked_number(
         words, "the words to read", 0, MOST_BYTES // 2, "read the rest with another", InstructionError
     )
-    return np.array((FORMAT_OF_NAME["RAM"].opcode << 8, checked_table_address(address), 2 * words), np.uint16)
+    return np.array(
+        (FORMAT_OF_NAME["RAM"].opcode << 8, checked_number(address, *TABLE_ADDRESS), 2 * words), np.uint16
+    )

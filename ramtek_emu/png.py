@@ -1,18 +1,49 @@
-"""Fields, and words with their entries, as PNG files. The only module that uses Pillow."""
+"""Fields, and words with their entries, as PNG files; and the chunks of PNG files."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from io import BytesIO
 from os import PathLike
 from pathlib import Path
-from typing import Final
+from struct import pack, unpack_from
+from typing import TYPE_CHECKING, Final
+from zlib import crc32
 
 import numpy as np
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from ramtek_emu.arrays import Colors, Words
 from ramtek_emu.writing import PNG, check_suffix, write_atomically, write_numbered
+
+if TYPE_CHECKING:
+    from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
+
+SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
+"""The first bytes of a PNG file; chunks follow."""
+
+
+def chunk(kind: bytes, content: bytes) -> bytes:
+    """The bytes of a chunk of a PNG file, with its length and its checksum."""
+    return pack(">I", len(content)) + kind + content + pack(">I", crc32(content, crc32(kind)))
+
+
+def chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yields the kinds and contents of the chunks of a PNG file; ValueError at a broken place."""
+    if data[:8] != SIGNATURE:
+        raise ValueError("a PNG file must begin as a PNG file does, not as something else")
+    place = 8
+    while place < len(data):
+        length, kind = unpack_from(">I4s", data, place) if len(data) - place >= 12 else (0, b"")
+        end = place + 12 + length
+        if end > len(data):
+            raise ValueError(f"a PNG file must have whole chunks, not end within the chunk at byte {place}")
+        content = data[place + 8 : end - 4]
+        if crc32(content, crc32(kind)) != unpack_from(">I", data, end - 4)[0]:
+            raise ValueError(f"a PNG file must have right checksums, not a wrong one at byte {place}")
+        yield kind, content
+        place = end
+
 
 LEVEL: Final = 4
 """The compression of a PNG file by default: from 0, fastest, to 9, smallest.
@@ -38,6 +69,8 @@ def png_bytes(field: Colors, level: int | None = None) -> bytes:
 
     `level` is the compression, 0 to 9, by default `LEVEL`; the pixels are the same at every level.
     """
+    from PIL import Image
+
     buffer = BytesIO()
     level = LEVEL if level is None else level
     Image.fromarray(np.ascontiguousarray(field)).save(buffer, "PNG", compress_level=level)
@@ -58,6 +91,9 @@ def word_png_bytes(words: Words, entries: Colors) -> bytes:
     Assumed: a suggested palette must be sorted by falling frequency. All frequencies are 0 here, so the order
     of the words is allowed.
     """
+    from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
+
     rows = np.zeros(len(entries), [("color", "u1", 3), ("alpha", "u1"), ("frequency", ">u2")])
     rows["color"], rows["alpha"] = entries, 255
     chunks = PngInfo()
@@ -68,6 +104,8 @@ def word_png_bytes(words: Words, entries: Colors) -> bytes:
 
 def indexed_png_bytes(indices: Colors, palette: Colors) -> bytes:
     """Indices, (lines, elements) uint8, of a palette of 1 to 256 colors, (n, 3) uint8, as a PNG file."""
+    from PIL import Image
+
     image = Image.fromarray(np.ascontiguousarray(indices))
     image.putpalette(palette.tobytes())
     return _saved(image)

@@ -10,7 +10,7 @@ looks dark, since only ten of sixteen bits are used. The texts are JSON. A value
 type, the length and the fields of the same value in a new display, or the error names the place.
 
 Snapshots may come from anywhere, so every size is checked before memory of that size is used: the file, the
-picture, the texts and the unpacked pixels. Pillow is not used here: it raises a dozen kinds of errors for
+picture, the texts and the unpacked pixels. Pillow does not read them: it raises a dozen kinds of errors for
 such files. This module reads and writes the small part of the PNG format that snapshots need, and refuses
 the rest: other depths, interlacing, filters, unknown critical chunks.
 """
@@ -23,10 +23,9 @@ import json
 import os
 import struct
 import zlib
-from collections.abc import Mapping
-from dataclasses import fields
-from functools import reduce
-from operator import getitem
+from collections.abc import Callable, Mapping
+from dataclasses import fields as fields_of
+from itertools import islice
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
@@ -38,37 +37,31 @@ from ramtek_emu.configuration import Configuration, EntryFormat
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError, reason_of
 from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.png import SIGNATURE, chunk, chunks
 from ramtek_emu.processor.environment_executors import MOST_SAVED
 from ramtek_emu.timing import Timing
 from ramtek_emu.writing import PNG, check_suffix, write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"
 """The text chunk `Software`; the number is the version of the format."""
-TEXTS: Final[dict[str, dict[str, tuple[str, ...]]]] = {
-    "lookup table": {
-        "address": ("lookup_table", "table_address"),
-        "entries": ("lookup_table", "entries"),
-    },
-    "parameters": {"now": ("parameters",), "saved": ("processor", "saved")},
-    "processor": {
-        "loaded_characters": ("processor", "loaded_characters"),
-        "illegal": ("processor", "illegal"),
-        "illegal_words": ("processor", "illegal_words"),
-        "named_only": ("processor", "without_effect"),
-        "nanoseconds": ("beam", "nanoseconds"),
-    },
-    "cursors": {
-        "all": ("cursors", "cursors"),
-        "track": ("cursors", "track"),
-        "enter_is_pressed": ("cursors", "enter_is_pressed"),
-        "driven": ("cursors", "tracking_devices"),
-    },
+TEXTS: Final[dict[str, tuple[str, ...]]] = {
+    "lookup table": ("address", "entries"),
+    "parameters": ("now", "saved"),
+    "processor": ("loaded_characters", "illegal", "illegal_words", "named_only", "nanoseconds"),
+    "cursors": ("all", "track", "enter_is_pressed", "driven"),
+    "glass": ("lines", "pixels"),
 }
-"""The text chunks and their fields, each with its place in `Ramtek9300.state()`."""
-MONITOR: Final[dict[str, dict[str, tuple[str, ...]]]] = {
-    "glass": {"lines": ("scan_out", "lines_painted"), "pixels": ("scan_out", "monitor_image")}
+"""The text chunks and their fields; "glass" only with a beam."""
+NAMES: Final = {
+    "address": "table_address",
+    "now": "parameters",
+    "named_only": "without_effect",
+    "all": "cursors",
+    "driven": "tracking_devices",
+    "lines": "lines_painted",
+    "pixels": "monitor_image",
 }
-"""The text chunk that the snapshot of a display with a beam has besides."""
+"""The names in `Ramtek9300.state()` of the fields that have another name there."""
 
 
 def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = False) -> None:
@@ -89,37 +82,39 @@ def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bo
 def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
     """The display of a snapshot file; MissingInputError if it cannot be read, SnapshotError if not valid."""
     try:
+        # A pipe might never end.
         if not Path(path).is_file():
-            raise MissingInputError(f"a snapshot must be a file, not {os.fspath(path)}; check the name")
+            raise OSError("there is none")
         with open(path, "rb") as file:
             data = file.read(MOST_FILE + 1)
-    except MissingInputError:
-        raise
     except (OSError, ValueError) as cause:
         raise MissingInputError(
             f"a snapshot must be a file that can be read, not {os.fspath(path)!r} ({reason_of(cause)}); "
             "check the name"
         ) from None
     if len(data) > MOST_FILE:
-        raise SnapshotError(
-            f"a snapshot must be at most {MOST_FILE} bytes, not more ({os.fspath(path)}); take a new one"
-        )
+        raise refusal(f"have at most {MOST_FILE} bytes", f"more ({os.fspath(path)})")
     return display_of(data)
 
 
 def snapshot_bytes(display: Ramtek9300) -> bytes:
     """The display as the bytes of a PNG file."""
-    state = NO_TIME | display.state()
-    configuration = display.configuration
+    values, configuration = _values(display), display.configuration
     timing = configuration.timing and vars(configuration.timing)
-    plain: dict[str, Any] = {
-        "configuration": vars(configuration)
-        | {"entry_format": configuration.entry_format.name, "timing": timing}
-    }
-    for keyword, places in texts_of(configuration).items():
-        plain[keyword] = {field: to_plain(reduce(getitem, place, state)) for field, place in places.items()}
-    texts = {keyword: json.dumps(values, separators=(",", ":")) for keyword, values in plain.items()}
+    kinds = {"entry_format": configuration.entry_format.name, "timing": timing}
+    plain: dict[str, Any] = {"configuration": vars(configuration) | kinds}
+    for keyword, names in TEXTS.items():
+        if keyword != "glass" or timing:
+            plain[keyword] = {name: to_plain(values[NAMES.get(name, name)]) for name in names}
+    texts = {keyword: json.dumps(text, separators=(",", ":")) for keyword, text in plain.items()}
     return picture_bytes(display.words, {"Software": SOFTWARE} | texts)
+
+
+def _values(display: Ramtek9300) -> dict[str, Any]:
+    """The state of a display by the names of its values, the parameters as one; without a beam, time is 0."""
+    parts = display.state()
+    values: dict[str, Any] = {"nanoseconds": 0, "parameters": parts.pop("parameters")}
+    return values | {name: value for part in parts.values() for name, value in part.items()}
 
 
 def display_of(data: bytes) -> Ramtek9300:
@@ -127,33 +122,25 @@ def display_of(data: bytes) -> Ramtek9300:
     words, texts = picture_of(data)
     if texts.get("Software") != SOFTWARE:
         raise refusal(f"be of the format {SOFTWARE!r}", repr(texts.get("Software", "unknown")[:40]))
-    configuration = configuration_of(_fields(texts, "configuration"))
+    configuration = configuration_of(_object(texts, "configuration"))
     if words.shape != (configuration.lines, configuration.elements):
         raise refusal(
             f"have {configuration.elements} x {configuration.lines} words, as its configuration says",
             f"{words.shape[1]} x {words.shape[0]}",
         )
-    if int(words.max()) > configuration.largest_word:
-        raise value_refusal("a word", f"0 to {configuration.largest_word}", int(words.max()))
+    whole_number(int(words.max()), (0, configuration.largest_word), "a word")
     display = Ramtek9300(configuration)
-    state: dict[str, Any] = NO_TIME | display.state() | {"frame_buffer": {"words": words}}
-    state["processor"]["saved"] = [state["parameters"]]
-    for keyword, places in texts_of(configuration).items():
-        values = _fields(texts, keyword, *places)
-        for field, (*path, name) in places.items():
-            part = reduce(getitem, path, state)
-            part[name] = from_plain(part[name], values[field], ".".join([*path, name]))
-    display.restore(state)
+    values = _values(display)
+    values |= {"words": words, "saved": [values["parameters"]]}
+    for keyword, fields in TEXTS.items():
+        if keyword != "glass" or configuration.timing is not None:
+            given = _object(texts, keyword, *fields)
+            for field in fields:
+                name = NAMES.get(field, field)
+                values[name] = from_plain(values[name], given[field], name)
+    state = {part: {name: values.get(name) for name in names} for part, names in display.state().items()}
+    display.restore(state | {"parameters": values["parameters"]})
     return display
-
-
-NO_TIME: Final = {"beam": {"nanoseconds": 0}}
-"""The beam in the snapshot of a display without one."""
-
-
-def texts_of(configuration: Configuration) -> dict[str, dict[str, tuple[str, ...]]]:
-    """The text chunks of a display, but that of its configuration."""
-    return TEXTS if configuration.timing is None else TEXTS | MONITOR
 
 
 def configuration_of(plain: dict[str, Any]) -> Configuration:
@@ -166,7 +153,7 @@ def configuration_of(plain: dict[str, Any]) -> Configuration:
         kinds = {"entry_format": entry_format, "timing": timing and Timing(**timing)}
         return Configuration(**plain | kinds)
     except (KeyError, TypeError):
-        names = ", ".join(field.name for field in fields(Configuration))
+        names = ", ".join(field.name for field in fields_of(Configuration))
         raise value_refusal("the configuration", f"an object of {names}", plain) from None
     except ConfigurationError as cause:
         raise SnapshotError(
@@ -174,7 +161,7 @@ def configuration_of(plain: dict[str, Any]) -> Configuration:
         ) from None
 
 
-def _fields(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
+def _object(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
     """The JSON object of a text chunk; SnapshotError if it is missing or its fields are not `names`."""
     try:
         values = json.loads(texts.get(keyword, "null"))
@@ -204,20 +191,21 @@ MOST_LISTED: Final = {"saved": MOST_SAVED, "tracking_devices": 256}
 """Limit: the most items of a list, by name."""
 
 
-def to_plain(value: Any) -> Any:
-    """The value for JSON: arrays become base64, the monitor image deflated."""
-    if not isinstance(value, np.ndarray):
-        if isinstance(value, dict):
-            return {key: to_plain(item) for key, item in value.items()}
-        return [to_plain(item) for item in value] if isinstance(value, tuple | list) else value
-    if value.dtype == np.bool_:
-        data = np.packbits(value).tobytes()
-    elif value.ndim == 2:
-        # The highest byte of a packed color is 0.
-        data = zlib.compress(value.view(np.uint8).reshape(-1, 4)[:, :3].tobytes(), 6)
-    else:
-        data = value.tobytes()
+def packed(array: AnyArray) -> str:
+    """An array as base64: dots as bits, the monitor image deflated, without the bytes that are 0."""
+    data = np.packbits(array).tobytes() if array.dtype == np.bool_ else array.tobytes()
+    if array.ndim == 2 and array.dtype == np.uint32:
+        data = zlib.compress(array.view(np.uint8).reshape(-1, 4)[:, :3].tobytes(), 6)
     return base64.b64encode(data).decode("ascii")
+
+
+def to_plain(value: Any, text_of: Callable[[AnyArray], str] = packed) -> Any:
+    """A value of a state for JSON; `text_of` makes arrays to texts."""
+    if isinstance(value, np.ndarray):
+        return text_of(value)
+    if isinstance(value, dict):
+        return {key: to_plain(item, text_of) for key, item in value.items()}
+    return [to_plain(item, text_of) for item in value] if isinstance(value, tuple | list) else value
 
 
 def from_plain(pattern: Any, value: Any, place: str) -> Any:
@@ -290,7 +278,6 @@ def _array(pattern: AnyArray, value: Any, place: str) -> AnyArray:
     return array.view(pattern.dtype).reshape(pattern.shape)
 
 
-SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 MOST_FILE: Final = 48 << 20
 """Limit: the longest file, in bytes."""
 MOST_SIDE: Final = 4096
@@ -307,63 +294,46 @@ def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
     # A line begins with the number of its filter; 0 means no filter.
     rows = np.zeros((lines, 1 + 2 * elements), np.uint8)
     rows[:, 1:] = words.astype(">u2").view(np.uint8).reshape(lines, -1)
-    parts = [SIGNATURE, _chunk(b"IHDR", struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))]
+    parts = [SIGNATURE, chunk(b"IHDR", struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))]
     parts += [
-        _chunk(b"tEXt", keyword.encode("ascii") + b"\0" + text.encode("ascii"))
+        chunk(b"tEXt", keyword.encode("ascii") + b"\0" + text.encode("ascii"))
         for keyword, text in texts.items()
     ]
-    parts += [_chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)), _chunk(b"IEND", b"")]
+    parts += [chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)), chunk(b"IEND", b"")]
     return b"".join(parts)
 
 
 def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
     """The words and the texts of a PNG file of `picture_bytes`; SnapshotError if it is not valid."""
-    if data[:8] != SIGNATURE:
-        raise refusal("begin as a PNG file does", "as something else")
     size: tuple[int, int] | None = None
     texts: dict[str, str] = {}
     packed: list[bytes] = []
-    place, kind, text_size = 8, b"", 0
-    for _ in range(MOST_CHUNKS):
-        kind, content, place = _next_chunk(data, place)
-        if size is None:
-            size = _size(kind, content)
-        elif kind == b"IDAT":
-            packed.append(content)
-        elif kind == b"tEXt":
-            keyword, text = _text(content)
-            if keyword in texts:
-                raise refusal("have each text once", f"{keyword!r} twice")
-            texts[keyword] = text
-            text_size += len(text)
-            if text_size > MOST_TEXT:
-                raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
-        elif kind == b"IEND":
-            break
-        elif not kind[0] & 0x20:
-            raise refusal("have known chunks", f"a chunk {kind.decode('latin-1')!r}")
+    kind, text_size = b"", 0
+    try:
+        for kind, content in islice(chunks(data), MOST_CHUNKS):
+            if size is None:
+                size = _size(kind, content)
+            elif kind == b"IDAT":
+                packed.append(content)
+            elif kind == b"tEXt":
+                keyword, text = _text(content)
+                if keyword in texts:
+                    raise refusal("have each text once", f"{keyword!r} twice")
+                texts[keyword] = text
+                text_size += len(text)
+                if text_size > MOST_TEXT:
+                    raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
+            elif kind == b"IEND":
+                break
+            elif not kind[0] & 0x20:
+                raise refusal("have known chunks", f"a chunk {kind.decode('latin-1')!r}")
+    except SnapshotError:
+        raise
+    except ValueError as broken:
+        raise SnapshotError(f"{broken}; take a new snapshot with --snapshot") from None
     if kind != b"IEND" or size is None:
         raise refusal(f"end within {MOST_CHUNKS} chunks", "go on")
     return _words(packed, *size), texts
-
-
-def _chunk(kind: bytes, content: bytes) -> bytes:
-    """The bytes of a chunk, with length and checksum."""
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-
-def _next_chunk(data: bytes, place: int) -> tuple[bytes, bytes, int]:
-    """The kind and the content of a chunk, and the place of the next chunk."""
-    if len(data) < place + 12:
-        raise refusal("have whole chunks", f"end in a chunk, at byte {len(data)}")
-    length, kind = struct.unpack_from(">I4s", data, place)
-    end = place + 12 + length
-    if end > len(data):
-        raise refusal("have whole chunks", f"a chunk of {length} bytes at byte {place} of {len(data)}")
-    content = data[place + 8 : end - 4]
-    if zlib.crc32(content, zlib.crc32(kind)) != struct.unpack_from(">I", data, end - 4)[0]:
-        raise refusal("have chunks with a right checksum", f"a wrong checksum at byte {place}")
-    return kind, content, end
 
 
 def _size(kind: bytes, content: bytes) -> tuple[int, int]:

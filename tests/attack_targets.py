@@ -42,7 +42,7 @@ from autocolor.images import display_image
 from autocolor.journal.autosave import JOURNAL, Autosave
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
-from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, instructions
+from ramtek_emu import FAMILY, GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, instructions
 from ramtek_emu.errors import RamtekError
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
@@ -335,7 +335,7 @@ def fault_of_sql(data: bytes) -> str:
 
 # The display.
 
-CONFIGURATIONS: Final = (SMALL, GMR_9300, PRINCETON_9300, NCAR_9460, *(SMALL,) * 12)
+CONFIGURATIONS: Final = (SMALL, FAMILY, PRINCETON_9300, NCAR_9460, *(SMALL,) * 12)
 """The displays of streams, mostly the small one, which takes a hundredth of the time of the others."""
 NEWER: Final = (
     *(0x2701, 0x080E, 0x0041, 0x0006, 0xFF, 0, 512, 639, 1023, 0, 512, 639, 1023, 0, 512, 0x4EFF),
@@ -361,7 +361,7 @@ def stream_samples() -> tuple[bytes, ...]:
         instructions.write_vectors([[20, 10], [30, 15], [5, 20]], 9), instructions.write_cursor(0, 5, 6),
         instructions.write_segments([[1, 2, 12, 9], [3, 3, 8, 20]], 7), instructions.read_cursor(0),
         instructions.write_text("What is this?", 1, 1), next(instructions.read_image(0, 0, 9, 5))[0],
-        instructions.read_entries(4, 9), instructions.load_short_entries(8, [[1, 2, 3]]),
+        instructions.read_entries(4, 9), instructions.load_entries(8, [[1, 2, 3]], short=True),
     )  # fmt: skip
     streams = (*BOXES_STREAM, *image), (instructions.reset(), *drawing), (np.array(NEWER, np.uint16),)
     return tuple(
@@ -465,10 +465,8 @@ def fault_of_snapshot(_: bytes) -> str:
     return "" if display.words.max() <= display.configuration.largest_word else "a word that cannot be"
 
 
-MARK: Final = b"<mark>"
-"""Where what is no display sends a mark."""
 REPLIES: Final = (
-    bytes(range(64)), b"\2\0" + MARK + b"\1\2\3\4" + MARK, b"\3SSH-2.0-OpenSSH_9.2\r\n", bytes(400),
+    bytes(range(64)), b"\2\0\1\2\3\4", b"\3SSH-2.0-OpenSSH_9.2\r\n", bytes(400),
     b"\1" + struct.pack("<40H", *(word for place in range(20) for word in (600, 200 + place | 0x3000))),
 )  # fmt: skip
 
@@ -482,9 +480,7 @@ def fault_of_show(data: bytes) -> str:
             display, _ = listener.accept()
             with display, contextlib.suppress(OSError):
                 display.settimeout(10)
-                for number, segment in enumerate(data[1:].split(MARK)):
-                    display.send(b"\0" * bool(number), socket.MSG_OOB)
-                    display.sendall(segment)
+                display.sendall(data[1:])
                 if not stays:
                     display.shutdown(socket.SHUT_WR)
                 while display.recv(1 << 16):

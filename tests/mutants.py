@@ -37,6 +37,11 @@ OPPOSITE: Final = (
     *("BitAnd_BitOr", "BitOr_BitAnd", "LShift_RShift", "RShift_LShift"),
 )
 """The changes of arithmetic. Others, such as `+` to `>>`, fail at once."""
+OF_INSTRUCTIONS: Final = tuple(
+    f"ramtek_emu/{wing}" for wing in ("instruction_set", "memory", "drawing", "processor")
+)
+"""Folders that the conformance suite tests, beside the tests of the folder."""
+SUITE: Final = ("tests/ramtek_emu/test_conformance.py", "tests/ramtek_emu/test_twin.py")
 SAYS_NOTHING: Final = re.compile(r"^(raise|assert|@|if TYPE_CHECKING|LOG\.|logger\.)|strict=True")
 """Lines whose changes say nothing: messages, logs, and checks that hold in correct code."""
 TYPE: Final = re.compile(r"\| None|None \||(->|: |\[)[\w.\[\]]+ \|")
@@ -103,7 +108,8 @@ def is_killed(tests: list[str], options: str, seconds: float) -> bool:
 
 def survivors(folder: str, mutants: list[Mutant], copy: Path) -> Iterator[tuple[Mutant, str]]:
     """The mutants that no test of the folder kills, each with its changed line."""
-    tests = [str(each) for each in (Path("tests") / folder).glob("test_*.py")] + [folder]
+    suite = SUITE if folder in OF_INSTRUCTIONS else ()
+    tests = [*suite, *map(str, (Path("tests") / folder).glob("test_*.py")), folder]
     options = f"--basetemp={copy}-tmp --ignore-glob={folder}/*/*"
     start = time.monotonic()
     if is_killed(tests, options, 3600):

@@ -33,6 +33,7 @@ from autocolor.screens.session import PICTURE
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions
 from ramtek_emu.errors import RamtekError
+from ramtek_emu.host.port import break_off
 from tests.attack_targets import stream_samples
 from tests.attacks import ROOT, Trial
 from tests.autocolor.random_hand import RandomHandWithKeys
@@ -175,7 +176,6 @@ class Server(Program):
             host.join()
         try:
             with self.open() as port:
-                port.reset()
                 port.send(instructions.write_image(np.full((4, 4), 200)))
                 port.send(instructions.read_entries(0, 2))
                 port.receive(2)
@@ -186,17 +186,15 @@ class Server(Program):
     def visit(self, chance: random.Random) -> None:
         """A host that draws or misbehaves, and leaves."""
         act, samples = chance.random(), stream_samples()
-        with contextlib.suppress(RamtekError, OSError), (port := self.open()).wire.socket as wire:
+        with contextlib.suppress(RamtekError, OSError), self.open().socket as wire:
             wire.setblocking(True)
             wire.settimeout(5)
             for _ in range(chance.randint(0, 4)):
                 wire.send(damaged(chance.choice(samples)[1:], chance, samples))
                 if chance.random() < 0.3:
                     wire.recv(chance.randint(1, 100000))
-                if chance.random() < 0.1:
-                    port.wire.send_mark()
             if act < 0.2:
-                port.wire.break_off()
+                break_off(wire)
             elif act < 0.3:
                 time.sleep(chance.random() * 3)
             elif act < 0.6:

@@ -144,12 +144,6 @@ def printing(command: Command) -> None:
     command.until(lambda: command.unread > PIPE_BYTES - 4096)
 
 
-def program(command: Command) -> None:
-    """The program of `ramtek tty` runs."""
-    assert command.process.stdout is not None
-    assert command.process.stdout.readline() == b"ready\n"
-
-
 class Row(NamedTuple):
     """A command at a moment; its exit codes, where -1 stands for 128 and the signal; its outputs."""
 
@@ -172,7 +166,6 @@ WRITTEN = ("o.png", "s.png", "r.ramtek")
 SERVERS = (f"serve --unix display {OUTPUTS}", f"serve --port 0 {OUTPUTS}")
 PIPED = (f"serve --stdio {OUTPUTS}", f"serve --stdio --joystick stick {OUTPUTS}")
 PLAYED = f"play - {OUTPUTS}"
-TTY = "tty --stream --link link display -- sh -c 'echo ready; exec sleep 60'"
 COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
 AUTOCOLOR = {
     f"render {COUPE} -o o.png": ("o.png",),
@@ -194,7 +187,6 @@ ROWS = (
     Row("list lines.ramtek", printing),
     Row("list lines.ramtek", at_any_time, (0, -1)),
     Row("assemble - -o a.ramtek", at_any_time),
-    *(Row(TTY, moment, has_display=True) for moment in (at_any_time, program)),
     Row("-o o.png", at_any_time, (0, -1), ("o.png",)),
     *(Row(command, at_any_time, (0, -1), AUTOCOLOR[command], "autocolor") for command in AUTOCOLOR),
     *(Row(command, at_any_time, (0, -1), (), "autocolor", has_display=True) for command in SHOWN),

@@ -28,11 +28,11 @@ PUBLIC_NAMES = {
         "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
-        "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
-        "InstructionError", "JPL_9460", "Joystick", "ListingError", "MissingInputError", "NCAR_9460",
-        "NoScreenError", "OutputError", "OutputExistsError", "PRINCETON_9300", "PortError", "Ramtek9300",
-        "RamtekError", "Recorder", "ReplyError", "SnapshotError", "TcpPort", "Timing", "UnixPort",
-        "WordsError", "WriteError", "read_snapshot", "write_snapshot",
+        "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "FAMILY", "GMR_9300",
+        "HostPort", "InstructionError", "JPL_9460", "Joystick", "ListingError", "MissingInputError",
+        "NCAR_9460", "NoScreenError", "OutputError", "OutputExistsError", "PRINCETON_9300", "PortError",
+        "Ramtek9300", "RamtekError", "Recorder", "ReplyError", "SnapshotError", "TcpPort", "Timing",
+        "UnixPort", "WordsError", "WriteError", "read_snapshot", "write_snapshot",
     ],
 }  # fmt: skip
 
@@ -47,7 +47,7 @@ WINGS = {
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "films",
         "command_line",
         "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
-        "host", "monitor", "snapshot", "inspection", "testing", "commands", "__main__",
+        "host", "monitor", "conformance", "snapshot", "inspection", "testing", "commands", "__main__",
     ),
 }  # fmt: skip
 """The wings of a package in the order of its data: each may use those before it and no other."""
@@ -74,7 +74,7 @@ PLACES = {
     ("pygame",): {("ramtek_emu.monitor.glass", True)},
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
     ("PIL",): {
-        ("ramtek_emu.png", True), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
+        ("ramtek_emu.png", False), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
         ("autocolor.scene.kinds", False),
     },
     ("platformdirs",): {("autocolor.files.state", True)},

@@ -31,11 +31,9 @@ NOT_RUN = {
     "ramtek serve --port 9300 --inspect": "it waits for hosts",
     "ramtek play fade.ramtek --loads-per-second 24": "it opens a window",
     "ramtek serve --unix /tmp/display --window &": "it waits for hosts",
-    "ramtek tty /tmp/display -- old_program {}": "it runs a program that the reader has",
     "ramtek serve --stdio -o lines.png < words > replies &": "test_emulators.py runs it with the simulator",
-    "ramtek tty /tmp/display -- env LD_PRELOAD=$PWD/whole_reads.so old_program {}": (
-        "it runs a program that the reader has"
-    ),
+    "ramtek conformance -- ramtek serve --stdio --configuration {}": "it takes some minutes",
+    "ramtek conformance --only princeton-9300 -- ./my_emulator": "it runs a program that the reader has",
     "ramtek serve --port 9300 --window": "it waits for hosts",
     "ramtek serve --port 9300 --joystick stick -o last.png &": "it waits for hosts",
     "ramtek serve --port 9300 --window --record session.ramtek": "it waits for hosts",

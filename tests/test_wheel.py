@@ -118,7 +118,9 @@ def files_of_packages() -> set[str]:
     scene = {
         Path("autocolor", "demo_scene", path.name) for path in (coupe / "scene.toml", *coupe.glob("*.obj"))
     }
-    return {path.as_posix() for path in modules | typed | web | scene}
+    claims = {path.relative_to(ROOT) for path in (ROOT / "ramtek_emu" / "conformance").glob("*.jsonl")}
+    assert claims
+    return {path.as_posix() for path in modules | typed | web | scene | claims}
 
 
 def test_the_wheel_holds_both_packages_and_the_demo_and_nothing_else(installed: Installed) -> None:

@@ -42,22 +42,17 @@ FRAMES_PER_SECOND: Final = 24.0
 """Assumed: the rate of motion pictures."""
 
 STREAM: Final = ".ramtek"
-FILMS: Final = (".webp", ".apng", ".gif")
+FILMS: Final = (".webp", ".apng")
 
 Progress = Callable[[Result], object]
 """A function that is called with the result of each frame."""
 
 
 class Film(NamedTuple):
-    """An animation that was written: its path, or the pattern of its paths, and the number of frames.
-
-    `lossy` frames of a GIF lost colors; `largest_loss` is the largest difference of a component, 0 to 255.
-    """
+    """An animation that was written: its path, or the pattern of its paths, and the number of frames."""
 
     path: str
     frames: int
-    lossy: int = 0
-    largest_loss: int = 0
 
 
 def animate(
@@ -81,8 +76,7 @@ def animate(
         autocolor.animate(scene, autocolor.frames(scene, [], 72, turn=360), "around.webp")
 
     Without `frames`, each variant is a frame; otherwise there are so many frames from the first variant to
-    the last, as the function `frames` makes them. `fps`, the frames per second, is 0.1 to 100, and at most 50
-    for a GIF.
+    the last, as the function `frames` makes them. `fps`, the frames per second, is 0.1 to 100.
 
     A frame costs its edit from the frame before. Memory is bounded, because frames are written as they are
     made; only a stream is in memory until its end. With `loop`, a film begins again at its end. `size` and
@@ -103,7 +97,7 @@ def animate(
     kind = kind_of(name)
     if not rows:
         raise UsageError("an animation must have at least one frame, not none; make some with `frames`")
-    check_rate(fps, kind)
+    check_rate(fps)
     if frames is not None:
         scene, picture = scene_and_picture(source)
         source = scene if picture is None else (scene, picture)
@@ -130,14 +124,14 @@ def animate(
                 pass
             return Film(name, len(rows))
         with refusals_of_this_package(name):
-            loss = write_film(
+            write_film(
                 name,
                 (result.image for result in _made(results, tell) if isinstance(result.image, np.ndarray)),
                 fields_per_second=fps,
                 loop=loop,
                 overwrite=overwrite,
             )
-    return Film(name, len(rows), loss.fields, loss.largest)
+    return Film(name, len(rows))
 
 
 def kind_of(path: str) -> str:
@@ -145,21 +139,20 @@ def kind_of(path: str) -> str:
     suffix = Path(path).suffix.lower()
     if suffix not in (*FILMS, STREAM) and not (suffix == ".png" and "{" in path):
         raise UsageError(
-            "an animation must be written to .webp, .apng, .gif, .ramtek, or numbered pictures such as"
+            "an animation must be written to .webp, .apng, .ramtek, or numbered pictures such as"
             f" frame-{{number:04}}.png, not to {shown(path)}; rename it"
         )
     return suffix
 
 
-def check_rate(fps: float, kind: str) -> None:
-    """Raise UsageError unless a film with this suffix can have this rate."""
-    from ramtek_emu.films import LEAST_RATE, MOST_GIF_RATE, MOST_RATE
+def check_rate(fps: float) -> None:
+    """Raise UsageError unless a film can have this rate."""
+    from ramtek_emu.films import LEAST_RATE, MOST_RATE
 
-    most = MOST_GIF_RATE if kind == ".gif" else MOST_RATE
     is_number = isinstance(fps, Real) and not isinstance(fps, bool)
-    if not is_number or not LEAST_RATE <= fps <= most:
+    if not is_number or not LEAST_RATE <= fps <= MOST_RATE:
         raise UsageError(
-            f"the frames per second must be a number from {LEAST_RATE:g} to {most:g}, not"
+            f"the frames per second must be a number from {LEAST_RATE:g} to {MOST_RATE:g}, not"
             f" {shown(fps)}; choose another"
         )
 

@@ -12,7 +12,6 @@ import json
 import math
 import os
 import re
-import struct
 import zlib
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -144,8 +143,9 @@ def _png(colors: Bytes, level: int | None) -> bytes:
 
 def _end_of_png(digits: str) -> bytes:
     """The end of a PNG file: a text chunk, and the chunk IEND."""
-    chunk = b"tEXtautocolor\0" + digits.encode()
-    return struct.pack(">I", len(chunk) - 4) + chunk + struct.pack(">I", zlib.crc32(chunk)) + END_OF_PNG
+    from ramtek_emu.png import chunk
+
+    return chunk(b"tEXt", b"autocolor\0" + digits.encode()) + END_OF_PNG
 
 
 def _webp(colors: Bytes, level: int | None) -> bytes:

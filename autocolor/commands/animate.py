@@ -20,7 +20,7 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor animate scenes/coupe --turn 360 --frames 72 -o around.webp
   autocolor animate scenes/coupe --vary lights.key.position=[-8,-6,5],[2,-6,5] -o sweep.apng
-  autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy,red -o fade.gif
+  autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy,red -o fade.webp
   autocolor animate scenes/coupe --table looks.csv -o "looks/{number:04}.png" --jobs 4
   autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy -o fade.ramtek
 """
@@ -51,8 +51,8 @@ FRAMES: Final = 48
 @option(
     "-o --output",
     "FILE",
-    "File to write: .webp or .apng (lossless), .gif (256 colors a frame), a name pattern for numbered"
-    " pictures such as {number:04}.png, or .ramtek, a load of the lookup table a frame.",
+    "File to write: .webp or .apng, which lose nothing, a name pattern for numbered pictures"
+    " such as {number:04}.png, or .ramtek, a load of the lookup table a frame.",
     required=True,
 )
 @option("--fps", "RATE", "Frames per second of a film.", float, default=24.0)
@@ -83,7 +83,7 @@ def animate(
     if not varies and table is None and not turn:
         raise UsageError("animate must have --vary, --table or --turn; write it as in --turn 360")
     kind = films.kind_of(output)
-    films.check_rate(fps, kind)
+    films.check_rate(fps)
     if kind == films.STREAM and source.smooth is None:
         source = source._replace(smooth=1)
     start, tables, code = started(source, varies, table)
@@ -108,9 +108,5 @@ def animate(
             overwrite=force,
             progress=lambda _: bar.update(1),
         )
-    if film.lossy:
-        from ramtek_emu.films import Loss
-
-        tell(Loss(film.lossy, film.largest_loss).sentence(film.frames))
     tell(f"wrote {film.path}, {film.frames:,} frame{'' if film.frames == 1 else 's'}")
     return code

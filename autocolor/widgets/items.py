@@ -277,19 +277,11 @@ def outline(area: Area, word: int) -> Item:
 
 def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int, area: Area) -> Item:
     """Polylines, each of (n, 2) elements and lines, clipped at an area, without infinite strokes."""
-    parts = []
-    for each in polylines:
-        pixels = pixels_inside(joined(each), area)
-        # Write the strokes that are still linked after clipping by one instruction.
-        breaks = np.flatnonzero((pixels[1:, :2] != pixels[:-1, 2:]).any(axis=1)) + 1
-        for chain in np.split(pixels, breaks):
-            if len(chain):
-                parts.append(instructions.write_vectors(np.vstack([chain[:1, :2], chain[:, 2:]]), word))
-    return Item(area, np.concatenate(parts).tobytes() if parts else b"")
+    return segments(together([joined(each) for each in polylines]), word, area)
 
 
 def segments(strokes: Floats, word: int, area: Area) -> Item:
-    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area, by WVU of later models."""
+    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area."""
     pixels = pixels_inside(strokes, area)
     return Item(area, instructions.write_segments(pixels, word).tobytes() if len(pixels) else b"")
 

@@ -260,7 +260,7 @@ def instructions_and_operands() -> str:
             for words in ("named by flags" if row.fixed is None else ", ".join(row.fixed) or "none",)
         ),
         f"\nNCAR ramtek.h alone has the numbers and the names of {len(UNIMPLEMENTED)} other opcodes: ",
-        ", ".join(f"{opcode:02X} {name}" for opcode, name, _ in UNIMPLEMENTED),
+        ", ".join(f"{row.opcode:02X} {row.name}" for row in UNIMPLEMENTED),
         ".\n\n| flag word, bit | operand | words | source |\n|---|---|---|---|\n",
     ]
     for word, operands in enumerate((OPERANDS_1, OPERANDS_2), 1):

@@ -55,7 +55,7 @@ def names_after(guide: str) -> dict[str, Any]:
 
 def played(*names: str, more: str = "") -> Ramtek9300:
     """The display after some listings, and after `more` lines of a listing."""
-    display = Ramtek9300()
+    display = Ramtek9300("family")
     lines = [line for name in names for line in listings()[name].splitlines()]
     stream = b"".join(assemble([*lines, *more.splitlines()]))
     display.send(np.frombuffer(stream, "<u2"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Iterator
 from typing import Final
 
 import click
@@ -32,14 +31,9 @@ def assemble(listing: str, output: str, force: bool) -> None:
         refuse_outputs(force, output)
     file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
 
-    from ramtek_emu.instruction_set.assembler import MOST_LINE
     from ramtek_emu.instruction_set.assembler import assemble as assembled
 
-    def lines() -> Iterator[str]:
-        while line := file.readline(MOST_LINE + 1):
-            yield line
-
-    data = b"".join(assembled(lines()))
+    data = b"".join(assembled(file))
     if output == "-":
         sys.stdout.buffer.write(data)
         return

@@ -37,7 +37,13 @@ configuration_option: Final = click.option(
     "--configuration",
     metavar="NAME",
     shell_complete=complete_configurations,
-    help="The display; GMR_9300 if not given.",
+    help="The display; GMR_9300 if not given. NAME-monochrome has a black-and-white monitor.",
+)
+table_option: Final = click.option(
+    "--table",
+    # `scan_out.TABLES`, whose module would import numpy for each command.
+    type=click.Choice(["gray", "gray8"]),
+    help="Show the words in gray, by their rank or by their low eight bits, not through the display's table.",
 )
 start_option: Final = click.option(
     "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."
@@ -49,6 +55,7 @@ def display_options(function: Function) -> Function:
     for option in (
         click.option("--force", is_flag=True, help="Overwrite what exists."),
         configuration_option,
+        table_option,
         start_option,
         click.option("--record", type=click.Path(), metavar="OUT", help="Record the words that are sent."),
         click.option(
@@ -60,8 +67,19 @@ def display_options(function: Function) -> Function:
     return function
 
 
-def display_asked_for(configuration: str | None, start: str | None = None) -> Ramtek9300:
-    """A new display of the configuration, GMR_9300 if None, or the display of the snapshot `start`."""
+def display_asked_for(
+    configuration: str | None, start: str | None = None, table: str | None = None
+) -> Ramtek9300:
+    """A new display of the configuration, GMR_9300 if None, or the display of the snapshot `start`.
+
+    It is shown through the table of grays `table`, None for its own.
+    """
+    display = _display_asked_for(configuration, start)
+    display.scan_out.shown_table = table or ""
+    return display
+
+
+def _display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
@@ -130,6 +148,24 @@ class Run:
         self.record: Record | None = None
         """Records words; None if no recording was asked for."""
 
+        self.hints: dict[str, str] = {}
+        """The hints that were printed, by their subject."""
+
+    def hint(self, display: Ramtek9300) -> str:
+        """Print a hint, once, about words that are all black, and about an instruction that is missing.
+
+        Returns the new hints; "" if there are none.
+        """
+        hints, foreign = {}, display.processor.foreign
+        if "dark" not in self.hints and display.scan_out.is_dark:
+            hints["dark"] = "words were drawn, and nothing is lit: --table gray shows them (F2 in a window)"
+        if "foreign" not in self.hints and foreign is not None:
+            hints["foreign"] = f"{foreign} is no instruction of a 9300; --configuration family has it"
+        self.hints |= hints
+        for hint in hints.values():
+            tell(hint)
+        return "; ".join(hints.values())
+
     def receive(self, number: int, _: object) -> None:
         """Remember a signal."""
         self.signal = self.signal or number
@@ -195,6 +231,7 @@ def running(
 
             run.record = record_words
         yield run
+        run.hint(display)
         if record is not None and run.attempt(recording.keep):
             tell(f"wrote {record}")
         if output is not None and run.attempt(lambda: display.save_png(output, overwrite=force)):
@@ -288,11 +325,20 @@ def show(
     """
     from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
 
+    rested_at = 0
+
     def tick() -> None:
+        nonlocal rested_at
         if run.ends:
             monitor.close()
         else:
+            before = display.words_received
             serve_for(TICK_SECONDS)
+            # A program that draws may load the table in the end: wait until it rests.
+            if rested_at != before == display.words_received:
+                rested_at = before
+                if hint := run.hint(display):
+                    monitor.tell(hint)
 
     monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
     monitor.open()

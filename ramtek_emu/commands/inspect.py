@@ -15,6 +15,7 @@ from ramtek_emu.commands.displays import (
     read_stream,
     refuse_outputs,
     start_option,
+    table_option,
     tell,
 )
 from ramtek_emu.writing import write_atomically
@@ -93,6 +94,7 @@ class NumberPair(click.ParamType[tuple[int, int]]):
 )
 @click.option("--force", is_flag=True, help="Overwrite what exists.")
 @configuration_option
+@table_option
 @start_option
 def inspect(
     stream: str,
@@ -105,6 +107,7 @@ def inspect(
     as_json: bool,
     force: bool,
     configuration: str | None,
+    table: str | None,
     start: str | None,
 ) -> None:
     """Stop a display at any instruction of STREAM, a file of 16-bit words, low byte first; - is stdin.
@@ -116,7 +119,7 @@ def inspect(
     if numbers is not None and output is None:
         raise click.UsageError("a range must have an output; add -o OUT")
     refuse_outputs(force, *([output] if numbers else ()), pictures=[snapshot, None if numbers else output])
-    display = display_asked_for(configuration, start)
+    display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.inspection.replay import Replay
 
@@ -166,16 +169,15 @@ def refuse_outside(thing: str, value: int | None, most: int, place: str = "") ->
 
 def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until: int, as_json: bool) -> None:
     """Print the instructions that wrote a word or an entry, the newest first."""
-    from ramtek_emu.inspection.histories import finished, writes_to_entry, writes_to_pixel
+    from ramtek_emu.inspection.histories import EntryRange, finished, history_of
+    from ramtek_emu.memory.scan_orders import Window
 
+    selection: Window | EntryRange
     if who is not None:
-        element, line = who
-        writes = finished(writes_to_pixel(replay, line, element, until))
-        thing = f"element {element}, line {line}"
+        selection, thing = Window(*who, *who), f"element {who[0]}, line {who[1]}"
     else:
-        writes = finished(writes_to_entry(replay, entry or 0, until))
-        thing = f"entry {entry}"
-    writes.reverse()
+        selection, thing = EntryRange(entry or 0, (entry or 0) + 1), f"entry {entry}"
+    writes = finished(history_of(replay, selection, until))[::-1]
     if as_json:
         rows = (json.dumps(plain_write(replay, write)) for write in writes)
         click.echo("[" + ",\n ".join(rows) + "]")

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from typing import Final
 
 import click
 
 from ramtek_emu.commands.displays import complete_configurations, open_stream
-from ramtek_emu.configuration import GMR_9300, configuration_named
+from ramtek_emu.configuration import GMR_9300, checked_configuration
 
 EXAMPLES: Final = """\b
 Examples:
@@ -35,22 +34,23 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
 
     `ramtek assemble` turns the listing into the same stream again, word for word.
     """
-    chosen = GMR_9300 if configuration is None else configuration_named(configuration)
+    chosen = GMR_9300 if configuration is None else checked_configuration(configuration)
     file = open_stream(stream)
-
-    def pieces() -> Iterator[bytes]:
-        while data := file.read(PIECE):
-            yield data
 
     from ramtek_emu.instruction_set.disassembler import items
 
-    listed = items(pieces(), chosen)
+    listed = items(iter(lambda: file.read(PIECE), b""), chosen)
     if not as_json:
         for item in listed:
             click.echo("\n".join(item.lines()))
         return
     separator = "["
     for item in listed:
-        click.echo(f"{separator}{json.dumps(item.to_plain())}", nl=False)
+        # A row of illegal words may be as long as the file.
+        click.echo(f'{separator}{json.dumps(item.to_plain(with_words=False))[:-1]}, "words": [', nl=False)
+        for first in range(0, len(item.words), PIECE):
+            comma = ", " if first else ""
+            click.echo(comma + json.dumps(item.words[first : first + PIECE].tolist())[1:-1], nl=False)
+        click.echo("]}", nl=False)
         separator = ",\n "
     click.echo("[]" if separator == "[" else "]")

@@ -55,8 +55,8 @@ FRAMES_PER_SECOND: Final = 24.0
 @click.option(
     "--film",
     metavar="FILE",
-    help="Write a film: .webp or .apng (lossless), .gif (256 colors a frame), or a name pattern for numbered"
-    " pictures such as {number:04}.png. Its last frame is the picture at the end.",
+    help="Write a film: .webp or .apng, which lose nothing, or a name pattern for numbered pictures such as"
+    " {number:04}.png. Its last frame is the picture at the end.",
 )
 @click.option(
     "--every",
@@ -80,6 +80,7 @@ def play(
     output: str | None,
     snapshot: str | None,
     configuration: str | None,
+    table: str | None,
     start: str | None,
     force: bool,
     record: str | None,
@@ -101,7 +102,7 @@ def play(
     refuse_film(context, film, force)
     refuse_outputs(force, record, film, pictures=[output, snapshot])
     file = open_stream(stream)
-    display = display_asked_for(configuration, start)
+    display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.host import pipe
     from ramtek_emu.host.port import waiting_bytes
@@ -178,17 +179,14 @@ def write_fields(
 
     Raises MissingInputError if the stream cannot be read to its end.
     """
-    from ramtek_emu.films import MOST_FIELDS, Loss, write_film
+    from ramtek_emu.films import MOST_FIELDS, write_film
     from ramtek_emu.host.pipe import StreamFields
 
     film = StreamFields(session, read, MOST_FIELDS, lambda: run.ends)
-    fields, loss = iter(film), Loss()
-
-    def write() -> None:
-        nonlocal loss
-        loss = write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)
-
-    is_written = run.attempt(write)
+    fields = iter(film)
+    is_written = run.attempt(
+        lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)
+    )
     for _ in fields:
         pass
     if not is_written:
@@ -198,6 +196,4 @@ def write_fields(
             f"a film such as {path} must have at most {MOST_FIELDS:,} frames, not more: it has the first"
             f" {MOST_FIELDS - 1:,} and the last; make fewer with --every"
         )
-    if loss.fields:
-        tell(loss.sentence(film.count))
     tell(f"wrote {path}, {film.count:,} frame{'' if film.count == 1 else 's'}")

@@ -28,16 +28,9 @@ class RamtekGroup(CommandGroup):
         "inspect": "a stream at any of its instructions; who wrote a pixel",
         "diff": "the first instruction after which two streams differ",
         "assemble": "a listing back into its stream",
+        "conformance": "the claims of the conformance suite, here or on another emulator",
         "serve": "a display for programs, over TCP, on a Unix socket or on a pipe",
-        "tty": "a program that opens a device, on a display of serve --unix",
     }
-
-
-def configurations(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """The names of configurations, for completion in a shell. The import is late to keep help fast."""
-    from ramtek_emu.commands.displays import complete_configurations
-
-    return complete_configurations(context, parameter, incomplete)
 
 
 @click.group(
@@ -56,8 +49,7 @@ def configurations(context: click.Context, parameter: click.Parameter, incomplet
 @click.option(
     "--configuration",
     metavar="NAME",
-    shell_complete=configurations,
-    help="The display to show it on; GMR_9300 if not given.",
+    help="The display to show it on; GMR_9300 if not given. NAME-monochrome has a black-and-white monitor.",
 )
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
 @click.option("--full-screen", is_flag=True, help="Fill the screen.")

@@ -8,7 +8,7 @@ import stat
 import sys
 import time
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -27,17 +27,20 @@ from ramtek_emu.commands.displays import (
 
 if TYPE_CHECKING:
     from ramtek_emu.commands.displays import Run
-    from ramtek_emu.host.joystick import JoystickLines
+    from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.pipe import Read, Write
-    from ramtek_emu.host.server import HostSession, Record, Server, TcpServer, UnixServer
+    from ramtek_emu.host.server import HostSession, Server
     from ramtek_emu.inspection.running_host import RunningHost
+
+Obey = Callable[[], object]
+"""A function that obeys the waiting lines for the joystick."""
 
 EXAMPLES: Final = """\b
 Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
   ramtek serve --port 9300 --inspect                stop its host, step, ask who wrote a pixel
-  ramtek serve --unix /tmp/display                  one for `ramtek tty` and programs of the time
+  ramtek serve --unix /tmp/display                  one for programs that open a device
   ramtek serve --port 9300 --joystick -             type `cursor 100 200 enter` to point at something
   old_program | ramtek serve --stdio -o out.png     a program that only draws
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
@@ -90,6 +93,7 @@ def serve(
     snapshot: str | None,
     record: str | None,
     configuration: str | None,
+    table: str | None,
     start: str | None,
     force: bool,
 ) -> None:
@@ -109,58 +113,41 @@ def serve(
             "stdin must be for words or for the joystick, not both; give --joystick a FIFO"
         )
     refuse_outputs(force, record, pictures=[output, snapshot])
-    display = display_asked_for(configuration, start)
+    display = display_asked_for(configuration, start, table)
 
-    from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.server import HostSession, TcpServer, UnixServer
 
-    inspected: RunningHost | None = None
-    if inspect:
-        from ramtek_emu.inspection.running_host import RunningHost
-
-        inspected = RunningHost(display)
-
-    def lines_for(resettable: HostSession | Server) -> JoystickLines | None:
-        if joystick is None:
-            return None
-        return JoystickLines(joystick, display.joystick, resettable.reset, tell)
-
     with running(display, output, snapshot, record, force) as run:
-        recording = run.record if inspected is None else recording_in_both(run, inspected)
-        gate = None if inspected is None else inspected.gate
-        if stdio:
-            session = HostSession(display, recording, gate)
-            serve_stdio(session, run, window, lines_for(session), inspected)
-        else:
-            server: TcpServer | UnixServer
-            if unix is not None:
-                server = UnixServer(display, unix, idle_seconds=idle, record=recording)
+        inspected: RunningHost | None = None
+        if inspect:
+            from ramtek_emu.inspection.running_host import RunningHost
+
+            inspected = RunningHost(display, run.record)
+        recording = run.record if inspected is None else inspected.record
+        session = HostSession(display, recording)
+        server: Server | None = None
+        if unix is not None:
+            server = UnixServer(display, unix, idle_seconds=idle, record=recording)
+        elif port is not None:
+            server = TcpServer(display, port, host, idle_seconds=idle, record=recording)
+        with server or nullcontext():
+            session = session if server is None else server.session
+            if inspected is not None:
+                inspected.session = session
+            obey: Obey | None = None
+            if joystick is not None:
+                from ramtek_emu.host.joystick import JoystickLines
+
+                obey = JoystickLines(joystick, display.joystick, session.reset, tell).obey
+            if server is None:
+                serve_stdio(session, run, window, obey, inspected)
             else:
-                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=recording)
-            server.gate = gate
-            with server:
-                serve_hosts(server, run, window, once, lines_for(server), inspected)
+                serve_hosts(server, run, window, once, obey, inspected)
                 tell_unexecuted(server.unexecuted)
 
 
-def recording_in_both(run: Run, inspected: RunningHost) -> Record:
-    """A function that records words for an inspected host, and for the recording of the run if it has one."""
-    also = run.record
-
-    def record(data: bytes) -> None:
-        if also is not None:
-            also(data)
-        inspected.record(data)
-
-    return record
-
-
 def serve_stdio(
-    session: HostSession,
-    run: Run,
-    window: bool,
-    lines: JoystickLines | None = None,
-    inspected: RunningHost | None = None,
+    session: HostSession, run: Run, window: bool, obey: Obey | None, inspected: RunningHost | None
 ) -> None:
     """Serve the program at the other end of stdin and stdout until it closes its end."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
@@ -168,48 +155,45 @@ def serve_stdio(
 
     read, write = standard_streams(run)
     source: HostSession | PolledPipe = session
-    if inspected is not None:
-        source = pipe = PolledPipe(session, read, write)
-        inspect_host(inspected, run, lines, lambda _: pipe.step())
-    elif window:
-        source = pipe = PolledPipe(session, read, write)
-        show(session.display, run, obeying(lines, pipe.serve_for))
-    elif lines is None:
+    if not window and inspected is None and obey is None:
         serve_pipe(session, read, write, lambda: run.ends)
     else:
         source = pipe = PolledPipe(session, read, write)
-        while not run.ends and not (pipe.ended and pipe.has_replied):
-            lines.obey()
+        if window or inspected is not None:
+            watch(session.display, run, obey, inspected, lambda _: pipe.step(), pipe.serve_for)
+        while obey and not (window or inspected or run.ends or (pipe.ended and pipe.has_replied)):
+            obey()
             if pipe.ended or not pipe.step():
                 time.sleep(PIPE_SECONDS)
     tell_the_end(session, is_cut_off=run.ends)
     tell_unexecuted(source.unexecuted + (waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin else 0))
 
 
-def inspect_host(
-    inspected: RunningHost, run: Run, lines: JoystickLines | None, step: Callable[[float], bool]
+def watch(
+    display: Ramtek9300,
+    run: Run,
+    obey: Obey | None,
+    inspected: RunningHost | None,
+    step: Callable[[float], bool],
+    serve_for: Callable[[float], None],
+    is_busy: Callable[[], bool] = lambda: False,
 ) -> None:
-    """Follow the display in the window of an inspector until it is closed, or a signal ends it."""
-    from ramtek_emu.inspection import inspector
+    """Show the display in a window, or in that of an inspector, until it is closed or a signal ends it."""
+    if inspected is not None:
+        from ramtek_emu.inspection import inspector
 
-    inspected.step = step
-    if lines is not None:
-        inspected.obey = lines.obey
-    name = inspected.display.configuration.name.replace("_", " ")
-    inspector.inspect_host(inspected, f"RAMTEK {name}", lambda: run.ends)
-
-
-def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:
-    """A function that obeys the lines for the joystick, then calls `serve_for`."""
-    if lines is None:
-        return serve_for
-    obey = lines.obey
+        inspected.step, inspected.is_connected = step, is_busy
+        inspected.obey = obey or inspected.obey
+        name = display.configuration.name.replace("_", " ")
+        inspector.inspect_host(inspected, f"RAMTEK {name}", lambda: run.ends)
+        return
 
     def obey_and_serve_for(seconds: float) -> None:
-        obey()
+        if obey is not None:
+            obey()
         serve_for(seconds)
 
-    return obey_and_serve_for
+    show(display, run, obey_and_serve_for, is_busy)
 
 
 def standard_streams(run: Run) -> tuple[Read, Write | None]:
@@ -253,37 +237,32 @@ def replies_to(stdout: int) -> tuple[int, int]:
 
 
 def serve_hosts(
-    server: TcpServer | UnixServer,
+    server: Server,
     run: Run,
     window: bool,
     once: bool,
-    lines: JoystickLines | None = None,
-    inspected: RunningHost | None = None,
+    obey: Obey | None,
+    inspected: RunningHost | None,
 ) -> None:
     """Serve hosts until a signal, until the window is closed, or, with `once`, until a host leaves."""
     if window or inspected is not None:
+        from ramtek_emu.host.server import HOST_SECONDS
         from ramtek_emu.monitor.window import open_screen
 
         # Fail before the address is printed.
         open_screen()
         announce(server)
-        if inspected is not None:
-            inspected.is_connected = lambda: server.busy
-            inspect_host(inspected, run, lines, server.step)
-            return
-        from ramtek_emu.host.server import HOST_SECONDS
-
         serve_for = partial(server.serve_for, wait=HOST_SECONDS)
-        show(server.display, run, obeying(lines, serve_for), lambda: server.busy)
+        watch(server.display, run, obey, inspected, server.step, serve_for, lambda: server.busy)
         return
     announce(server)
     while not run.ends and not (once and server.served):
-        if lines is not None:
-            lines.obey()
-        server.step(STEP_SECONDS if lines is None else JOYSTICK_SECONDS)
+        if obey is not None:
+            obey()
+        server.step(STEP_SECONDS if obey is None else JOYSTICK_SECONDS)
 
 
-def announce(server: TcpServer | UnixServer) -> None:
+def announce(server: Server) -> None:
     """Print the address for hosts, with a warning if other machines can reach it."""
     host = getattr(server, "host", "localhost")
     if host not in ("127.0.0.1", "localhost", "::1"):

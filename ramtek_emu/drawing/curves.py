@@ -6,8 +6,7 @@ square (Assumed: a radius in elements is one in lines).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import lru_cache
+from collections.abc import Generator, Iterator
 from typing import Final
 
 import numpy as np
@@ -23,6 +22,8 @@ MOST_PIXELS: Final = 1 << 14
 Assumed: a curve that nothing else stops ends here; a memory of 4096 x 4096, the largest, has that many pixels
 at its edges.
 """
+PIXELS_AT_ONCE: Final = 1 << 12
+"""Limit: the pixels of a conic between two pauses, 5 to 10 ms."""
 
 
 def write_circles(
@@ -83,8 +84,12 @@ def nearest_root(squares: Numbers) -> Numbers:
     return root + (squares - root * root > root)
 
 
-def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tuple[Numbers, Numbers]:
-    """The pixels of a conic from `start` on, in order: their elements and their lines.
+def conic_pixels(
+    conic: tuple[int, ...], start: Point, stop: Point | None
+) -> Generator[None, None, tuple[Numbers, Numbers]]:
+    """Trace the pixels of a conic from `start` on, in order; returns their elements and their lines.
+
+    The generator yields None at pauses.
 
     `conic` holds a to e of 0 = a x^2 + b y^2 + c xy + d x + e y, with x and y counted from the start, and the
     largest number of pixels. Hardware: LIN libdoc (the equation, the two ways to stop).
@@ -96,7 +101,7 @@ def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tu
     began.
     """
     target = None if stop is None else (stop.element - start.element, stop.line - start.line)
-    offsets = traced(conic, target)
+    offsets = yield from traced(conic, target)
     elements, lines = start.element + offsets[0], start.line + offsets[1]
     # The trace ends where a coordinate leaves its register of 16 bits.
     left = (elements < -0x8000) | (elements > 0x7FFF) | (lines < -0x8000) | (lines > 0x7FFF)
@@ -104,12 +109,11 @@ def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tu
     return elements[:end], lines[:end]
 
 
-@lru_cache(maxsize=8)
-def traced(conic: tuple[int, ...], target: tuple[int, int] | None) -> Numbers:
+def traced(conic: tuple[int, ...], target: tuple[int, int] | None) -> Generator[None, None, Numbers]:
     """The pixels of a conic, (2, n): elements and lines counted from the start.
 
     Measured: updating the value and the slopes from pixel to pixel takes two fifths of the time of computing
-    them anew. The cache makes a host that repeats the instruction cost a single trace.
+    them anew.
     """
     a, b, c, slope_x, slope_y, most = conic
     most = min(most, MOST_PIXELS) if most > 0 else MOST_PIXELS
@@ -153,6 +157,6 @@ def traced(conic: tuple[int, ...], target: tuple[int, int] | None) -> Numbers:
         lines.append(y)
         if target is not None and distance == 0:
             break
-    offsets = np.array((elements, lines), np.int64)
-    offsets.flags.writeable = False
-    return offsets
+        if len(elements) % PIXELS_AT_ONCE == 0:
+            yield
+    return np.array((elements, lines), np.int64)

@@ -6,6 +6,7 @@ at the edge of the window. What is **not**: size factors above 16.
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Final
 
@@ -20,6 +21,10 @@ LARGEST_CELL: Final = 16
 
 Assumed: a programmed character has 12 lines of 8 dots (LIN), so that four bits hold a dimension.
 """
+
+LINES_AT_ONCE: Final = 256
+PIXELS_AT_ONCE: Final = 1 << 20
+"""Limits: the lines of text, and their pixels, between two pauses; at most some 10 ms."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,8 +91,10 @@ def write_text(
     order: ScanOrder,
     start: Point,
     enable: WriteEnable,
-) -> Point:
+) -> Generator[None, None, Point]:
     """Write characters along the scan of the window from `start` on; returns the point of the next cell.
+
+    The generator yields None at pauses, after at least PIXELS_AT_ONCE pixels or LINES_AT_ONCE lines of text.
 
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
     (the dots between are background); JPL (its driver sets a window from 1, 1 on and starts text anywhere,
@@ -116,6 +123,7 @@ def write_text(
     low, low_line = order.steps(window, order.corner(memory))
     room, room_across = order.inner_and_outer(memory)
     words = np.array((style.background, style.foreground), np.uint16)
+    lines_drawn = pixels = 0
     seen_lines = reaching(outer, across, line_step, low_line, room_across)
     for line in range(seen_lines.start, min(seen_lines.stop, last + 1)):
         end = first_cells + line * line_cells
@@ -128,6 +136,10 @@ def write_text(
             written = dots if style.transparent else whole
             place = order.stepped(corner, first + seen.start * step, outer + line * line_step)
             frame_buffer.write_block(place, order, words.take(dots.view(np.uint8)), enable, written)
+            lines_drawn, pixels = lines_drawn + 1, pixels + dots.size
+            if lines_drawn >= LINES_AT_ONCE or pixels >= PIXELS_AT_ONCE:
+                lines_drawn = pixels = 0
+                yield
     if not last:
         return order.stepped(corner, inner + len(numbers) * step, outer)
     return order.stepped(corner, (more - (last - 1) * line_cells) * step, outer + last * line_step)

@@ -40,7 +40,8 @@ class Ink(NamedTuple):
         """The bits of the texture at pixels with these numbers along the line.
 
         Hardware: NCAR (sixteen bits, no pixel repeated); LONG (the low field is a bit's width less one).
-        Assumed: the highest bit comes first.
+        Assumed: the highest bit comes first, as in rasters. LONG REFLIB.C, an emulation that draws into a
+        file, takes the lowest first, but its test of the bit is commented out.
         """
         pattern, repeat = self.texture
         bits = 15 - numbers // ((repeat & 0x0F) + 1) % 16
@@ -52,7 +53,8 @@ def write_linked(
 ) -> Iterator[int]:
     """Draw lines from vertex to vertex of (n, 2) vertices, in slices as `write_lines` does.
 
-    Assumed: the texture continues from line to line, and starts again with the next instruction.
+    Hardware: LONG REFLIB.C, an emulation (the texture continues from line to line of a call).
+    Assumed: it starts again with the next instruction; a vertex between two lines takes one bit.
     """
     return write_lines(frame_buffer, vertices[:-1], vertices[1:], ink, enable, runs_on=True)
 

@@ -19,7 +19,8 @@ import re
 import stat
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import Final
 
@@ -27,7 +28,7 @@ from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.memory.cursors import Joystick
 
 MOST_BYTES: Final = 1 << 12
-"""Limit: the most bytes of a line."""
+"""Limit: the most bytes of a line. The rest of a longer line is another line."""
 MOST_LINES: Final = 64
 """Limit: the most lines that wait; while they do, no more are read."""
 NUMBER: Final = re.compile(r"[+-]?[0-9]{1,6}")
@@ -89,8 +90,9 @@ class JoystickLines:
                 self._answer(f"joystick, line {self._number}: {refusal}")
 
     def _read(self, number: int) -> None:
-        for line in lines_of(number):
-            self._lines.put(line)
+        with suppress(OSError), open(number, "rb") as file:
+            while line := file.readline(MOST_BYTES):
+                self._lines.put(line.decode("utf-8", "replace").rstrip("\n"))
 
 
 def opened(path: str) -> int:
@@ -110,21 +112,3 @@ def opened(path: str) -> int:
             f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} "
             f"({reason_of(cause)}); make a FIFO with mkfifo, or give - for stdin"
         ) from None
-
-
-def lines_of(number: int) -> Iterator[str]:
-    """Yields the lines of an open file until its end. A line that is too long is cut and then refused."""
-    rest = b""
-    while True:
-        try:
-            data = os.read(number, MOST_BYTES)
-        except OSError:
-            data = b""
-        *lines, rest = (rest + data).split(b"\n")
-        yield from (line.decode("utf-8", "replace") for line in lines)
-        # Put a question mark before a cut line: then its actions are refused.
-        rest = rest if len(rest) <= MOST_BYTES else b"?" + rest[:MOST_BYTES]
-        if not data:
-            if rest:
-                yield rest.decode("utf-8", "replace")
-            return

@@ -12,10 +12,10 @@ are dropped.
 
 from __future__ import annotations
 
+import itertools
 import queue
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -24,7 +24,7 @@ from ramtek_emu.arrays import Colors
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.host.server import READ_BYTES, HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
-from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 
 Read = Callable[[int], bytes]
 Write = Callable[[bytes], object]
@@ -129,70 +129,46 @@ class PolledPipe:
 
 
 class CutReader:
-    """Reads a stream as the given `read` does, and cuts it after the instructions that `is_cut` chooses.
+    """The pieces of a stream, which is cut after the instructions that `is_cut` chooses.
 
-    `is_cut` is called for each instruction in order; an illegal word is an instruction with the format
-    ILLEGAL, as in a listing.
+    `is_cut` is called with the opcode of each instruction, in order. A row of illegal words is an
+    instruction, as in a listing; it ends where the reads of the stream cut it.
     """
 
-    def __init__(
-        self, read: Read, configuration: Configuration, is_cut: Callable[[Instruction], bool]
-    ) -> None:
-        self.ends_in_cut = False
-        """Whether the last piece ends with a chosen instruction."""
+    def __init__(self, read: Read, configuration: Configuration, is_cut: Callable[[int], bool]) -> None:
+        self.waiting = 0
+        """The number of bytes that were read and not yielded."""
         self._read = read
         self._is_cut = is_cut
         self._decoder = Decoder(configuration)
-        self._pieces: deque[tuple[bytes, bool]] = deque()
-        self._odd_byte = b""
 
-    @property
-    def waiting(self) -> int:
-        """The number of bytes that were read and not returned."""
-        return sum(len(piece) for piece, _ in self._pieces)
-
-    def __call__(self, most: int) -> bytes:
-        """The next piece, at most `most` bytes; no bytes at the end of the stream."""
-        if not self._pieces:
-            data = self._read(most)
-            if not data:
-                return data
-            self._pieces.extend(self._pieces_of(data))
-        piece, self.ends_in_cut = self._pieces.popleft()
-        return piece
-
-    def _pieces_of(self, data: bytes) -> Iterator[tuple[bytes, bool]]:
-        """Yields the bytes, cut after the chosen instructions, and whether a piece ends with one."""
-        # A word may have begun in the bytes before, and an instruction in the words before.
-        odd = len(self._odd_byte)
-        whole = self._odd_byte + data
-        self._odd_byte = whole[len(whole) & ~1 :]
-        words = np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16, copy=False)
-        begun = 0
-        for instruction in self._decoder.feed(words):
-            if self._is_cut(instruction):
-                end = 2 * self._decoder.used - odd
-                yield data[begun:end], True
-                begun = end
-        if begun < len(data):
-            yield data[begun:], False
+    def __iter__(self) -> Iterator[tuple[bytes, bool]]:
+        """Yields the bytes of each piece, and whether it ends with a chosen instruction."""
+        odd_byte = b""
+        while data := self._read(READ_BYTES):
+            # A word may have begun in the bytes before, and an instruction in the words before.
+            whole, odd, begun = odd_byte + data, len(odd_byte), 0
+            odd_byte = whole[len(whole) & ~1 :]
+            for words in self._decoder.split(np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16)):
+                if not self._decoder.is_within_row and self._is_cut(words.item(0) >> 8):
+                    end = 2 * self._decoder.used - odd
+                    self.waiting = len(data) - end
+                    yield data[begun:end], True
+                    begun = end
+            if begun < len(data):
+                self.waiting = 0
+                yield data[begun:], False
 
 
-def is_load(instruction: Instruction) -> bool:
+def is_load(opcode: int) -> bool:
     """Whether an instruction loads the lookup table."""
-    return instruction.format.name == "LAM"
+    return opcode == FORMAT_OF_NAME["LAM"].opcode
 
 
-def every(count: int) -> Callable[[Instruction], bool]:
+def every(count: int) -> Callable[[int], bool]:
     """A function that returns True at every `count`-th call."""
-    number = 0
-
-    def is_cut(_: Instruction) -> bool:
-        nonlocal number
-        number = (number + 1) % count
-        return number == 0
-
-    return is_cut
+    numbers = itertools.count(1)
+    return lambda _: next(numbers) % count == 0
 
 
 class PacedReader:
@@ -216,25 +192,24 @@ class PacedReader:
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], object] = time.sleep,
     ) -> None:
-        self._read = CutReader(read, configuration, is_load)
+        self._pieces = iter(CutReader(read, configuration, is_load))
         self._seconds = 1 / loads_per_second
         self._clock = clock
         self._sleep = sleep
         self._due = clock()
 
-    def __call__(self, most: int) -> bytes:
-        """At most `most` bytes of the stream, none at its end. Waits until a load is due."""
-        data = self._read(most)
-        if data and self._read.ends_in_cut:
-            self._wait()
-        return data
+    def __call__(self, _: int) -> bytes:
+        """The next bytes of the stream, none at its end. Waits until a load is due.
 
-    def _wait(self) -> None:
-        """Wait until the next load is due. After a late load, the next load still waits its full time."""
-        now = self._clock()
-        if now < self._due:
-            self._sleep(self._due - now)
-        self._due = max(self._due, now) + self._seconds
+        After a late load, the next load still waits its full time.
+        """
+        data, ends_in_load = next(self._pieces, (b"", False))
+        if ends_in_load:
+            now = self._clock()
+            if now < self._due:
+                self._sleep(self._due - now)
+            self._due = max(self._due, now) + self._seconds
+        return data
 
 
 class StreamFields:
@@ -262,10 +237,12 @@ class StreamFields:
         display = self._session.display
         last: Colors | None = None
         is_skipped = False
-        while self._executes_piece():
+        for data, is_cut in self._read:
+            if any(self._ends() for _ in self._session.feed(data)):
+                break
             self.left_out |= is_skipped
-            is_skipped = self._read.ends_in_cut and self.count == self._most - 1
-            if self._read.ends_in_cut and not is_skipped:
+            is_skipped = is_cut and self.count == self._most - 1
+            if is_cut and not is_skipped:
                 last = display.field()
                 self.count += 1
                 yield last
@@ -273,11 +250,3 @@ class StreamFields:
         if last is None or not np.array_equal(field, last):
             self.count += 1
             yield field
-
-    def _executes_piece(self) -> bool:
-        """Execute the words up to the next cut; returns False at the end of the words to execute."""
-        data = self._read(READ_BYTES)
-        for _ in self._session.feed(data) if data else ():
-            if self._ends():
-                return False
-        return bool(data)

@@ -3,32 +3,22 @@
 Words have 16 bits and are sent low byte first, in files and on wires (Hardware: PRG, JPL: their programs hand
 the words of their memory to the interface unchanged).
 
-A `Wire` connects a host to a display in another process: a TCP connection or a Unix socket. TCP carries a
-stream of bytes. A Unix socket carries packets; a packet is a write of the host.
-
-Between the words of a wire there may be marks. A host sends a mark to ask for a hard reset, and the display
-sends a mark back when the reset is done: the replies that arrive before that mark precede the reset. On TCP,
-a mark is a byte of urgent data, which is no part of the words; on a Unix socket it is an empty packet.
-
-Hardware: PRG DRIVER.c (the RESET bit of the interface's command register, a hard reset). Assumed: a mark
-stands for that bit, since a wire has no register beside the words; it takes effect after all words that were
-sent earlier.
+A socket connects a host to a display in another process. TCP carries a stream of bytes. A Unix socket carries
+packets; a packet is a write of the host.
 """
 
 from __future__ import annotations
 
 import os
 import re
-import select
 import selectors
 import socket
 import struct
 import sys
 import time
 from contextlib import suppress
-from enum import Enum
 from types import TracebackType
-from typing import BinaryIO, Final, NoReturn, Protocol, TypeVar
+from typing import BinaryIO, Final, Protocol, TypeVar
 
 import numpy as np
 
@@ -55,10 +45,6 @@ class Recorder:
         self._file = file
         self._port = port
 
-    def __repr__(self) -> str:
-        file = getattr(self._file, "name", type(self._file).__name__)
-        return f"Recorder({file}{'' if self._port is None else f', {self._port!r}'})"
-
     def send(self, words: Words) -> None:
         """Write the words to the file, low byte first, and pass them on."""
         stream = checked_stream(words)
@@ -78,80 +64,41 @@ class Recorder:
 
 PACKET_BYTES: Final = 1 << 19
 """The longest packet that is read whole. Limit: more than a socket's default buffer."""
-SIOCATMARK: Final = 0x8905
-"""The request that asks whether the next byte is urgent (Linux: asm-generic/sockios.h)."""
 
 
-class Sign(Enum):
-    """A result of reading a wire other than bytes."""
+def prepared(connected: socket.socket) -> socket.socket:
+    """The socket, set not to wait and, with TCP, to send small pieces at once; OSError if it is lost."""
+    connected.setblocking(False)
+    if not keeps_writes(connected):
+        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return connected
 
-    NOTHING = "nothing has arrived"
-    MARK = "a mark"
-    END = "the other side has sent everything"
+
+def keeps_writes(connected: socket.socket) -> bool:
+    """Whether bytes arrive in packets: a packet is a write of the other side."""
+    return connected.type != socket.SOCK_STREAM
 
 
-class Wire:
-    """A connected socket. No method waits, and all raise OSError if the other side is lost."""
+def read_socket(connected: socket.socket, most: int) -> bytes | None:
+    """The next packet, or at most `most` bytes of a stream; b"" at the end, None if nothing has arrived."""
+    with suppress(BlockingIOError):
+        return connected.recv(PACKET_BYTES if keeps_writes(connected) else most)
+    return None
 
-    def __init__(self, connected: socket.socket) -> None:
-        self.socket = connected
-        self.keeps_writes = connected.type != socket.SOCK_STREAM
-        """Whether bytes arrive in packets: a packet is a write of the other side."""
-        connected.setblocking(False)
-        if not self.keeps_writes:
-            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            # Leave urgent bytes at their places in the stream.
-            connected.setsockopt(socket.SOL_SOCKET, socket.SO_OOBINLINE, 1)
 
-    def read(self, most: int) -> bytes | Sign:
-        """The next bytes or a sign: a whole packet, or at most `most` bytes of a stream.
+def write_socket(connected: socket.socket, data: bytes | memoryview) -> int:
+    """Send as many bytes as the socket takes now; returns their number: for a packet, all or none."""
+    with suppress(BlockingIOError):
+        return connected.send(data)
+    return 0
 
-        Reading a stream stops before a mark, so that bytes before and after it are never mixed.
-        """
-        try:
-            if self.keeps_writes:
-                packet = self.socket.recv(PACKET_BYTES)
-                return packet or (Sign.END if self._has_ended() else Sign.MARK)
-            if answer_of(self.socket, SIOCATMARK):
-                self.socket.recv(1)
-                return Sign.MARK
-            return self.socket.recv(most) or Sign.END
-        except BlockingIOError:
-            return Sign.NOTHING
 
-    def send(self, data: bytes | bytearray | memoryview) -> int:
-        """Send as many bytes as the wire takes now; returns their number: for a packet, all or none."""
-        try:
-            return self.socket.send(data)
-        except BlockingIOError:
-            return 0
-
-    def send_mark(self) -> bool:
-        """Send a mark; returns False if the wire takes none now."""
-        try:
-            if self.keeps_writes:
-                self.socket.send(b"")
-            else:
-                self.socket.send(b"\0", socket.MSG_OOB)
-        except BlockingIOError:
-            return False
-        return True
-
-    def break_off(self) -> None:
-        """Make closing a TCP connection look like a loss to the other side. Do nothing on a Unix socket."""
-        if not self.keeps_writes:
-            # On some systems, a lost connection accepts no options.
-            with suppress(OSError):
-                at_once = struct.pack("ii", 1, 0)
-                self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, at_once)
-
-    def _has_ended(self) -> bool:
-        """Whether an empty packet is the end: the other side has hung up, and no bytes are waiting."""
-        if sys.platform != "linux":
-            return True
-        poll = select.poll()
-        poll.register(self.socket, select.POLLRDHUP)
-        return bool(poll.poll(0)) and not waiting_bytes(self.socket)
+def break_off(connected: socket.socket) -> None:
+    """Make closing a TCP connection look like a loss to the other side. Do nothing on a Unix socket."""
+    if not keeps_writes(connected):
+        # On some systems, a lost connection accepts no options.
+        with suppress(OSError):
+            connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
 def waiting_bytes(file: socket.socket | int) -> int:
@@ -161,26 +108,18 @@ def waiting_bytes(file: socket.socket | int) -> int:
     """
     if sys.platform != "linux":
         return 0
+    import fcntl
     import termios
 
-    with suppress(OSError):
-        return answer_of(file, termios.FIONREAD)
-    return 0
-
-
-def answer_of(file: socket.socket | int, request: int) -> int:
-    """The system's answer to a request about an open file; 0 on systems without such requests."""
-    if sys.platform != "linux":
+    try:
+        answer = fcntl.ioctl(file, termios.FIONREAD, bytes(struct.calcsize("i")))
+    except OSError:
         return 0
-    import fcntl
-
-    return int.from_bytes(fcntl.ioctl(file, request, bytes(struct.calcsize("i"))), sys.byteorder)
+    return int.from_bytes(answer, sys.byteorder)
 
 
 MOST_SECONDS: Final = 1_000_000
 """The longest timeout. Limit: the system cannot wait for much longer at once."""
-MOST_UNREAD: Final = 1 << 28
-"""Limit: bytes of replies that were not received yet. Another server than a display may send without end."""
 HURRIED_SECONDS: Final = 0.25
 """The longest wait for the display when an error or a signal closes the port. Limit: a hang would hide it."""
 
@@ -200,23 +139,15 @@ class SocketPort:
     def __init__(self, address: str, connected: socket.socket, timeout: float) -> None:
         self.address = address
         self.timeout = timeout
-        self.wire = Wire(connected)
+        self.socket = prepared(connected)
         self._received = bytearray()
-        self._mark_is_due = False
-        """Whether the display has not answered a reset yet; replies that arrive before are dropped."""
-
-    def __reduce__(self) -> NoReturn:
-        raise TypeError(
-            f"a connection must stay in its process, not be copied or pickled ({self.address}); "
-            f"open another {type(self).__name__} there"
-        )
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.address}, {'closed' if self._is_closed else 'open'})"
 
     @property
     def _is_closed(self) -> bool:
-        return self.wire.socket.fileno() < 0
+        return self.socket.fileno() < 0
 
     def send(self, words: Words) -> None:
         """Send 16-bit words; PortError if the connection is lost."""
@@ -232,7 +163,7 @@ class SocketPort:
                 "ask for as many as an instruction replies"
             )
         deadline = time.monotonic() + self.timeout
-        while self._mark_is_due or len(self._received) < 2 * count:
+        while len(self._received) < 2 * count:
             if not self._ready(max(0.0, deadline - time.monotonic())):
                 raise ReplyError(
                     f"the words received must come within {self.timeout:g} seconds, not {count} of which "
@@ -243,35 +174,6 @@ class SocketPort:
         words = np.frombuffer(bytes(self._received[: 2 * count]), "<u2").astype(np.uint16)
         del self._received[: 2 * count]
         return words
-
-    def reset(self) -> None:
-        """Ask for a hard reset, and wait until it is done; all words sent before are executed first.
-
-        The unfinished instruction and all unread replies are dropped. Parameters, screen, cursors and status
-        are reset; the table and the characters are not. PortError if the display does not answer in time, or
-        on TCP on a system without marks.
-        """
-        if sys.platform != "linux" and not self.wire.keeps_writes:
-            raise PortError(
-                "a hard reset over TCP must be asked for on Linux, and this is another system; "
-                "use the joystick unit of `ramtek serve --joystick`"
-            )
-        is_sent = False
-        while self._mark_is_due or not is_sent:
-            # Wait for the answer to an earlier reset that timed out: two marks at once would merge.
-            events = self._ready(self.timeout, writing=not self._mark_is_due)
-            if not events:
-                raise PortError(
-                    f"a display must reset within {self.timeout:g} seconds, and {self.address} does not; "
-                    "wait until no other host is served, or start it again"
-                )
-            if events & selectors.EVENT_WRITE:
-                try:
-                    is_sent = self._mark_is_due = self.wire.send_mark()
-                except OSError as cause:
-                    raise self._gone(reason_of(cause)) from cause
-            if events & selectors.EVENT_READ:
-                self._take()
 
     def close(self) -> None:
         """End the session, and wait until the display has executed all words; then it can serve other hosts.
@@ -295,28 +197,20 @@ class SocketPort:
                 self._close(min(self.timeout, HURRIED_SECONDS))
 
     def _close(self, seconds: float) -> None:
+        """End our side, and read until the display ends; PortError if it ended first, or does not end."""
         if self._is_closed:
             return
-        try:
-            self._end(seconds)
-        finally:
-            self.wire.socket.close()
-
-    def _end(self, seconds: float) -> None:
-        """End our side, and read until the display ends; PortError if it ended first, or does not end."""
         deadline = time.monotonic() + seconds
-        data: bytes | Sign = b""
-        while data is not Sign.NOTHING and time.monotonic() < deadline:
-            data = self._read()
-            if data is Sign.END:
-                raise self._gone("it closed the connection")
-        try:
-            self.wire.socket.shutdown(socket.SHUT_WR)
-        except OSError as cause:
-            raise self._gone(reason_of(cause)) from cause
-        while (left := deadline - time.monotonic()) > 0:
-            if self._ready(left) and self._read() is Sign.END:
-                return
+        with self.socket:
+            while self._take() and time.monotonic() < deadline:
+                self._received.clear()
+            try:
+                self.socket.shutdown(socket.SHUT_WR)
+            except OSError as cause:
+                raise self._gone(reason_of(cause)) from cause
+            while (left := deadline - time.monotonic()) > 0:
+                if self._ready(left) and self._read() == b"":
+                    return
         raise PortError(
             f"a display must execute all words within {seconds:g} seconds, and "
             f"{self.address} has not: it may be serving another host first; give a longer timeout"
@@ -328,7 +222,7 @@ class SocketPort:
             raise PortError(f"a port must be open, not closed ({self.address}); open it again")
         with selectors.DefaultSelector() as selector:
             wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if writing else 0)
-            selector.register(self.wire.socket, wanted)
+            selector.register(self.socket, wanted)
             ready = selector.select(seconds)
         return ready[0][1] if ready else 0
 
@@ -340,7 +234,7 @@ class SocketPort:
             if events & selectors.EVENT_READ:
                 self._take()
             try:
-                if events & selectors.EVENT_WRITE and (count := self.wire.send(data)):
+                if events & selectors.EVENT_WRITE and (count := write_socket(self.socket, data)):
                     return count
             except OSError as cause:
                 raise self._gone(reason_of(cause)) from cause
@@ -350,25 +244,17 @@ class SocketPort:
                     "not; read its replies, wait until no other host is served, or start it again"
                 )
 
-    def _take(self) -> None:
-        """Read the replies that have arrived; at a mark, drop all earlier replies."""
+    def _take(self) -> bool:
+        """Read replies; returns whether any have arrived. PortError if the display has ended."""
         data = self._read()
-        if data is Sign.END:
+        if data == b"":
             raise self._gone("it closed the connection")
-        if data is Sign.MARK:
-            self._received.clear()
-            self._mark_is_due = False
-        elif not isinstance(data, Sign):
-            self._received += data
-            if len(self._received) > MOST_UNREAD:
-                raise PortError(
-                    f"a display must send only what instructions read, and {self.address} sent "
-                    f"{MOST_UNREAD:,} bytes more; check the address, or receive replies earlier"
-                )
+        self._received += data or b""
+        return data is not None
 
-    def _read(self) -> bytes | Sign:
+    def _read(self) -> bytes | None:
         try:
-            return self.wire.read(self.at_once)
+            return read_socket(self.socket, self.at_once)
         except OSError as cause:
             raise self._gone(reason_of(cause)) from cause
 
@@ -467,9 +353,13 @@ def packet_socket() -> socket.socket:
     )
 
 
+LISTEN_SECONDS: Final = 1.0
+"""Limit: how long a host waits for a server that was just started and does not listen yet."""
+
+
 def connected_socket(path: str, timeout: float) -> socket.socket:
     """A socket connected to the display at a path; PortError if it is not reached within the seconds."""
-    deadline = time.monotonic() + timeout
+    begin = time.monotonic()
     while True:
         connected = packet_socket()
         connected.setblocking(False)
@@ -477,8 +367,10 @@ def connected_socket(path: str, timeout: float) -> socket.socket:
             connected.connect(path)
         except (OSError, ValueError) as cause:
             connected.close()
-            # The line is full. Unlike TCP, a Unix socket does not wait for a place.
-            if isinstance(cause, BlockingIOError) and time.monotonic() < deadline:
+            # The line may be full: unlike TCP, a Unix socket does not wait for a place.
+            waited = timeout if isinstance(cause, BlockingIOError) else min(timeout, LISTEN_SECONDS)
+            may_listen = isinstance(cause, BlockingIOError | FileNotFoundError | ConnectionRefusedError)
+            if may_listen and time.monotonic() < begin + waited:
                 time.sleep(0.05)
                 continue
             raise PortError(

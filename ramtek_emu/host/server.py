@@ -23,6 +23,7 @@ wait for the host, nothing more is read from it.
 from __future__ import annotations
 
 import os
+import secrets
 import selectors
 import socket
 import stat
@@ -40,7 +41,15 @@ from ramtek_emu import instructions
 from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import OutputError, OutputExistsError, PortError, reason_of
-from ramtek_emu.host.port import Sign, Wire, packet_socket, waiting_bytes
+from ramtek_emu.host.port import (
+    break_off,
+    keeps_writes,
+    packet_socket,
+    prepared,
+    read_socket,
+    waiting_bytes,
+    write_socket,
+)
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 
 Record = Callable[[bytes], object]
@@ -54,60 +63,34 @@ REPLY_PIECE: Final = 1 << 15
 """The words of waiting replies at which the session pauses, and the most that are returned at once."""
 
 
-class Gate:
-    """Decides how many instructions a display executes, for a program that stops its hosts."""
-
-    def __init__(self) -> None:
-        self.left: int | None = None
-        """How many more instructions may be executed; None for any number."""
-        self.is_within = False
-        """Whether the last pause was within a long instruction."""
-        self._place = 0
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether hosts must wait."""
-        return self.left == 0
-
-    def begin(self, place: int) -> None:
-        """Note that the next instruction begins at a place of the host's words."""
-        self._place, self.is_within = place, False
-
-    def closes_at(self, place: int) -> bool:
-        """Note how many words are executed; returns whether no further instruction may be."""
-        self.is_within = place == self._place
-        if not self.is_within:
-            self._place = place
-            if self.left:
-                self.left -= 1
-        return self.left == 0 and not self.is_within
-
-
 class HostSession:
-    """A host at a display: passes the bytes of its words on and the bytes of replies back, on any wire.
+    """Hosts at a display: passes the bytes of their words on and the bytes of replies back, on any wire.
 
     The session pauses often: a window is served in between, a signal is noticed, and replies are taken before
-    they outgrow the processor's bound.
+    they outgrow the processor's bound. The words that are left begin with the instruction in progress. When
+    instructions are executed, their words are recorded and leave.
     """
 
-    def __init__(self, display: Ramtek9300, record: Record | None = None, gate: Gate | None = None) -> None:
+    def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
         self.display = display
-        self._record = record
-        self._gate = gate
-        self._unrecorded = NO_WORDS
-        self.unexecuted = 0
-        """The number of words that are not executed yet: the rest of the last `feed`.
-
-        A half-drawn instruction counts with all its words, also the words of an earlier `feed`.
-        """
+        self.allowed: int | None = None
+        """How many more instructions may be executed, for a program that stops its hosts; None for all."""
+        self.is_within = False
+        """Whether the first instruction that is left is half executed."""
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
+        self._left = NO_WORDS
+        self._record_bytes = record
         self.leave()
 
     @property
-    def is_stopped(self) -> bool:
-        """Whether the host must wait until a gate opens."""
-        return self._gate is not None and self._gate.is_closed
+    def unexecuted(self) -> int:
+        """The number of words that have arrived and are not executed.
+
+        A half-drawn instruction counts with all its words. The words of an incomplete instruction do not
+        count once all words before them are executed.
+        """
+        return len(self._left) - self.display.decoder.pending_words
 
     @property
     def unfinished(self) -> bool:
@@ -122,50 +105,42 @@ class HostSession:
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
         words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
-        self.unexecuted = len(words)
+        self._left = np.concatenate((self._left, words)) if len(self._left) else words
         return self._execute(words)
 
     def _execute(self, words: Words) -> Iterator[bytes]:
-        processor, clock, gate = self.display.processor, time.perf_counter, self._gate
-        if gate is not None:
-            gate.begin(0)
-        while self.unexecuted and self.is_stopped:
+        processor, clock = self.display.processor, time.perf_counter
+        while self.unexecuted and self.allowed == 0:
             yield b""
-        # The first instruction may have begun with words of the last feed.
-        begun = self.display.decoder.pending_words
         steps = self.display.send_stepwise(words)
-        begin = place = previous = 0
+        place = 0
         while self.unexecuted:
-            due = clock() + SLICE_SECONDS
-            for place in steps:
-                closes = gate is not None and gate.closes_at(place)
-                if closes or clock() >= due or processor.waiting >= REPLY_PIECE:
-                    self.unexecuted = len(words) - place + (0 if place else begun)
+            due, before = clock() + SLICE_SECONDS, place
+            for step in steps:
+                before, place = place, step
+                if self.allowed is not None or clock() >= due or processor.waiting >= REPLY_PIECE:
+                    # A pause within an instruction has the number of the pause before.
+                    self.is_within = place == before
+                    if self.allowed and not self.is_within:
+                        self.allowed -= 1
                     break
-                previous = place
             else:
-                self.unexecuted = 0
-            if self._record is not None:
-                self._record_words(self._record, words[begin:place], words[place:])
-            begin = place
-            is_within, previous, resets = place == previous, place, self.display.resets
+                self.is_within = False
+            if executed := len(self._left) - len(words) + place if place else 0:
+                self._record(self._left[:executed])
+                self._left = words[place:]
+            was_within, resets = self.is_within, self.display.resets
             yield self._reply()
-            while processor.waiting or (self.unexecuted and self.is_stopped):
+            while processor.waiting or (self.unexecuted and self.allowed == 0):
                 yield self._reply()
-            if is_within and self.unexecuted and self.display.resets != resets:
+            if was_within and self.display.resets != resets:
                 # Leave the instruction that the reset abandoned out of the recording.
-                begin = place = previous = next(steps)
-                self.unexecuted = len(words) - place
-                if gate is not None:
-                    gate.begin(place)
+                place = next(steps)
+                self._left = words[place:]
 
-    def _record_words(self, record: Record, executed: Words, rest: Words) -> None:
-        """Record whole instructions; at the end, keep the words of an incomplete instruction for later."""
-        if len(executed):
-            record(np.concatenate((self._unrecorded, executed)).astype("<u2", copy=False).tobytes())
-            self._unrecorded = NO_WORDS
-        if not self.unexecuted:
-            self._unrecorded = np.concatenate((self._unrecorded, rest))
+    def _record(self, words: Words) -> None:
+        if self._record_bytes is not None:
+            self._record_bytes(words.astype("<u2", copy=False).tobytes())
 
     def _reply(self) -> bytes:
         count = min(self.display.processor.waiting, REPLY_PIECE)
@@ -177,21 +152,18 @@ class HostSession:
         The incomplete instruction and the unread replies are dropped; the odd byte stays, since the stream of
         bytes goes on.
         """
-        self._unrecorded = NO_WORDS
+        self._left = self._left[self.display.decoder.pending_words :]
+        self.is_within = False
         self.display.reset()
-        if self._gate is not None:
-            self._gate.is_within = False
-        if self._record is not None:
-            self._record(instructions.reset().astype("<u2", copy=False).tobytes())
+        self._record(instructions.reset())
 
     def leave(self) -> None:
-        """Drop the incomplete instruction, the odd byte and the unread replies.
+        """Drop the words that are left, the odd byte and the unread replies.
 
         Assumed: PRG DRIVER.c resets the display at an open that finds it not ready. Such a reset would erase
         the picture of the host that left, so only words that nobody can finish are dropped.
         """
-        self.unexecuted, self.odd_byte = 0, b""
-        self._unrecorded = NO_WORDS
+        self._left, self.odd_byte, self.is_within = NO_WORDS, b"", False
         self.display.decoder.clear()
         self.display.receive(self.display.processor.waiting)
 
@@ -203,23 +175,24 @@ REPLY_BYTES: Final = 1 << 18
 
 
 class Client:
-    """The host that is served now, with its wire, its session, its waiting replies and its time limits.
+    """The host that is served now, with its socket, its waiting replies and its time limits.
 
     A host that stops reading its replies loses them, but its words are still executed, as on a pipe.
     """
 
-    def __init__(self, wire: Wire, session: HostSession, idle_seconds: float, partial_seconds: float) -> None:
-        self.wire = wire
+    def __init__(
+        self, connected: socket.socket, session: HostSession, idle_seconds: float, partial_seconds: float
+    ) -> None:
+        """Serve a connected socket; OSError if it is lost already."""
+        self.socket = prepared(connected)
         self.session = session
         self.idle_seconds, self.partial_seconds = idle_seconds, partial_seconds
         self.waiting = 0
         """The number of bytes of waiting replies."""
         self._replies: deque[bytes] = deque()
-        self._mark_is_due = False
         self._takes_replies = True
         self._pending: Iterator[bytes] | None = None
-        self._is_gone = False
-        self._sent_all = False
+        self._is_gone = self._sent_all = False
         self._last_transfer = self._last_complete = time.monotonic()
 
     @property
@@ -228,20 +201,15 @@ class Client:
         return self._pending is not None and self.waiting < REPLY_BYTES
 
     @property
-    def has_to_send(self) -> bool:
-        """Whether a mark or replies wait to be sent."""
-        return self._mark_is_due or self.waiting > 0
-
-    @property
     def wanted(self) -> int:
         """The events of the socket that can be served now."""
         reading = self._pending is None and not self._sent_all and self.waiting < REPLY_BYTES
-        return (selectors.EVENT_READ if reading else 0) | (selectors.EVENT_WRITE if self.has_to_send else 0)
+        return (selectors.EVENT_READ if reading else 0) | (selectors.EVENT_WRITE if self.waiting else 0)
 
     @property
     def ended(self) -> bool:
         """Whether the host is lost, or has left with all words executed and all replies sent."""
-        return self._is_gone or (self._sent_all and self._pending is None and not self.has_to_send)
+        return self._is_gone or (self._sent_all and self._pending is None and not self.waiting)
 
     @property
     def deadline(self) -> float:
@@ -251,9 +219,8 @@ class Client:
 
     def serve(self, events: int) -> bool:
         """Read or write if the socket is ready; returns whether anything was transferred."""
-        transferred = False
-        if events & selectors.EVENT_WRITE and self.has_to_send:
-            transferred = self._send()
+        sends = events & selectors.EVENT_WRITE and self.waiting
+        transferred = bool(sends and self._send())
         if events & selectors.EVENT_READ:
             transferred |= self._read()
         if transferred:
@@ -261,52 +228,40 @@ class Client:
         return transferred
 
     def _send(self) -> bool:
-        """Send the mark, or the next reply. Replies to different writes are in different packets."""
+        """Send the next reply. Replies to different writes are in different packets."""
         try:
-            if self._mark_is_due:
-                self._mark_is_due = not self.wire.send_mark()
-                return not self._mark_is_due
-            sent = self.wire.send(self._replies[0])
+            count = write_socket(self.socket, self._replies[0])
         except OSError:
             self._takes_replies = False
-            self._drop_replies()
+            self._replies.clear()
+            self.waiting = 0
             return True
-        self.waiting -= sent
-        rest = self._replies.popleft()[sent:]
-        if rest:
+        self.waiting -= count
+        if rest := self._replies.popleft()[count:]:
             self._replies.appendleft(rest)
-        return sent > 0
-
-    def _drop_replies(self) -> None:
-        self._replies.clear()
-        self.waiting = 0
-        self._mark_is_due = False
+        return count > 0
 
     def _read(self) -> bool:
         try:
-            data = self.wire.read(READ_BYTES)
+            data = read_socket(self.socket, READ_BYTES)
         except OSError:
             self._is_gone = True
             return False
-        if data is Sign.NOTHING:
+        if data is None:
             return False
         if not self.session.unfinished:
             self._last_complete = time.monotonic()
-        if data is Sign.END:
-            self._sent_all = True
-        elif data is Sign.MARK:
-            self.session.leave()
-            self.session.reset()
-            self._drop_replies()
-            self._mark_is_due = True
-        elif not isinstance(data, Sign):
+        if data:
             # A packet is a write of the host: round it down to whole words.
-            self._pending = self.session.feed(data[: len(data) & ~1] if self.wire.keeps_writes else data)
+            whole = data[: len(data) & ~1] if keeps_writes(self.socket) else data
+            self._pending = self.session.feed(whole)
+        else:
+            self._sent_all = True
         return True
 
     def work(self) -> bool:
         """Execute a piece of the host's words; returns whether there was a piece."""
-        if self.session.is_stopped:
+        if self.session.allowed == 0:
             # Stop the clocks of a host that must wait.
             self._last_transfer = self._last_complete = time.monotonic()
         if not self.has_work or self._pending is None:
@@ -329,17 +284,17 @@ class Client:
     @property
     def unexecuted(self) -> int:
         """The number of the host's words that have arrived and are not executed."""
-        data = waiting_bytes(self.wire.socket) + len(self.session.odd_byte)
+        data = waiting_bytes(self.socket) + len(self.session.odd_byte)
         return data // 2 + self.session.unexecuted
 
     def leave(self) -> None:
-        """Close the wire and drop the unfinished instruction and the replies."""
+        """Close the socket and drop the unfinished instruction and the replies."""
         if self._pending is not None:
             # Tell the host that not all its words were executed.
-            self.wire.break_off()
+            break_off(self.socket)
         self._pending = None
         self.session.leave()
-        self.wire.socket.close()
+        self.socket.close()
 
 
 IDLE_SECONDS: Final = 600.0
@@ -363,11 +318,10 @@ class Server:
     ) -> None:
         self.display = display
         self.address = address
-        self.record = record
+        self.session = HostSession(display, record)
+        """The session of all hosts, one after the other."""
         self.idle_seconds = idle_seconds
         self.partial_seconds = PARTIAL_SECONDS
-        self.gate: Gate | None = None
-        """Stops the hosts that connect from now on; None lets all instructions through."""
         self.served = 0
         """The number of hosts that were served and have left; it never decreases."""
         self._listener = listener
@@ -393,7 +347,7 @@ class Server:
             return bool(self._selector.select(seconds)) and self._accept()
         left = max(0.0, client.deadline - time.monotonic())
         seconds = 0.0 if client.has_work else min(seconds, left)
-        self._selector.modify(client.wire.socket, client.wanted or selectors.EVENT_WRITE)
+        self._selector.modify(client.socket, client.wanted or selectors.EVENT_WRITE)
         done = False
         for _, events in self._selector.select(seconds):
             done |= client.serve(events)
@@ -415,8 +369,7 @@ class Server:
 
     def reset(self) -> None:
         """Press RESET on the control unit: drops the unfinished instruction; the host stays connected."""
-        client = self._client
-        (HostSession(self.display, self.record) if client is None else client.session).reset()
+        self.session.reset()
 
     def close(self) -> None:
         """Disconnect the host and stop listening; the hosts in line are turned away."""
@@ -440,12 +393,10 @@ class Server:
             return False
         try:
             connected.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-            wire = Wire(connected)
+            self._client = Client(connected, self.session, self.idle_seconds, self.partial_seconds)
         except OSError:
             connected.close()
             return True
-        session = HostSession(self.display, self.record, self.gate)
-        self._client = Client(wire, session, self.idle_seconds, self.partial_seconds)
         # While this host is served, other hosts wait in the listener's line.
         self._selector.unregister(self._listener)
         self._selector.register(connected, selectors.EVENT_READ)
@@ -453,7 +404,7 @@ class Server:
 
     def _disconnect(self) -> None:
         if self._client is not None:
-            self._selector.unregister(self._client.wire.socket)
+            self._selector.unregister(self._client.socket)
             self._client.leave()
             self._client = None
             self._selector.register(self._listener, selectors.EVENT_READ)
@@ -509,13 +460,7 @@ class UnixServer(Server):
         address = os.fspath(path)
         listener = packet_socket()
         try:
-            remove_stale_socket(address)
-            # The socket's file gets the permissions of the socket: set them before the file exists.
-            if sys.platform != "win32":
-                os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
-            listener.bind(address)
-            listener.listen(HOSTS_IN_LINE)
-            self._file = os.lstat(address)
+            self._file = listen_at(listener, address)
         except OutputExistsError:
             listener.close()
             raise
@@ -533,6 +478,32 @@ class UnixServer(Server):
         with suppress(OSError):
             if os.path.samestat(os.lstat(self.address), self._file):
                 os.unlink(self.address)
+
+
+def listen_at(listener: socket.socket, path: str) -> os.stat_result:
+    """Listen at a path, which then names the socket; returns the state of its file.
+
+    The name appears when the socket listens already, so that no host that finds it is refused. Before, the
+    socket has a hidden name in the same folder.
+    """
+    folder, name = os.path.split(path)
+    # The hidden name is as long, so that a path that is too long for a socket is refused.
+    hidden = os.path.join(folder, f".{secrets.token_hex(4)}{name[9:]}")
+    # The socket's file gets the permissions of the socket: set them before the file exists.
+    if sys.platform != "win32":
+        os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
+    listener.bind(hidden)
+    try:
+        listener.listen(HOSTS_IN_LINE)
+        remove_stale_socket(path)
+        # Unlike a renaming, a link replaces no file that another server has made meanwhile.
+        try:
+            os.link(hidden, path)
+        except FileExistsError:
+            raise taken(path, "exists") from None
+        return os.lstat(path)
+    finally:
+        os.unlink(hidden)
 
 
 def remove_stale_socket(path: str) -> None:
@@ -553,7 +524,12 @@ def remove_stale_socket(path: str) -> None:
                 return
             except OSError:
                 pass
-    raise OutputExistsError(
+    raise taken(path, thing)
+
+
+def taken(path: str, thing: str) -> OutputExistsError:
+    """The error for a path that another file or server has."""
+    return OutputExistsError(
         f"a server's socket must be a new file or the socket of a server that is gone, not {path}, "
         f"which {thing}; choose another path"
     )

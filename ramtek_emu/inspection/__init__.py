@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from ramtek_emu.inspection.differences import Difference as Difference
 from ramtek_emu.inspection.differences import first_difference as first_difference
+from ramtek_emu.inspection.histories import EntryRange as EntryRange
 from ramtek_emu.inspection.histories import Write as Write
 from ramtek_emu.inspection.histories import finished as finished
+from ramtek_emu.inspection.histories import history_of as history_of
 from ramtek_emu.inspection.histories import last_change as last_change
-from ramtek_emu.inspection.histories import last_entry_change as last_entry_change
 from ramtek_emu.inspection.histories import next_change as next_change
-from ramtek_emu.inspection.histories import next_entry_change as next_entry_change
-from ramtek_emu.inspection.histories import writes_to_entry as writes_to_entry
-from ramtek_emu.inspection.histories import writes_to_pixel as writes_to_pixel
 from ramtek_emu.inspection.replay import Replay as Replay
 from ramtek_emu.inspection.stream import Stream as Stream
+from ramtek_emu.memory.scan_orders import Window as Window

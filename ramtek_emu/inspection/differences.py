@@ -17,6 +17,7 @@ from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.replay import Replay, reply_of
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.instruction import NO_WORDS
+from ramtek_emu.snapshot import to_plain
 
 
 class Difference(NamedTuple):
@@ -34,14 +35,17 @@ def first_difference(first: Stream, second: Stream, start: Ramtek9300 | None = N
     None if the displays are alike after every instruction.
     """
     number = first_different_instruction(first, second) - 1
-    display = Replay(first, start).display
     # Displays that execute the same instructions are alike.
-    display.send(first.words_between(0, number))
-    reply_of(display)
+    display = Replay(first, start).display_at(number)
     other = deepcopy(display)
     for later in range(number + 1, max(len(first), len(second)) + 1):
-        words, other_words = (_words_of(stream, later) for stream in (first, second))
-        replies = _reply_to(display, words), _reply_to(other, other_words)
+        words, other_words = (
+            stream.words_between(later - 1, later) if later <= len(stream) else NO_WORDS
+            for stream in (first, second)
+        )
+        display.send(words)
+        other.send(other_words)
+        replies = reply_of(display), reply_of(other)
         # Two displays that were alike before the same instruction are alike after it.
         if np.array_equal(words, other_words):
             continue
@@ -54,21 +58,12 @@ def first_difference(first: Stream, second: Stream, start: Ramtek9300 | None = N
 def first_different_instruction(first: Stream, second: Stream) -> int:
     """The number of the first instruction whose words differ, or that a single stream has."""
     both = min(len(first), len(second))
-    length = min(first.ends[both], second.ends[both])
+    # A row of illegal words may be longer in one of them.
+    differing = np.flatnonzero(first.ends[: both + 1] != second.ends[: both + 1])
+    number = int(differing[0]) if len(differing) else both + 1
+    length = first.ends[number - 1]
     differing = np.flatnonzero(first.words[:length] != second.words[:length])
-    place = int(differing[0]) if len(differing) else int(length)
-    # Equal words make equal instructions, so the ends of both streams are equal up to this place.
-    return int(np.searchsorted(first.ends, place, side="right"))
-
-
-def _words_of(stream: Stream, number: int) -> Words:
-    """The words of an instruction; no words after the end of the stream."""
-    return stream.words_between(number - 1, number) if number <= len(stream) else NO_WORDS
-
-
-def _reply_to(display: Ramtek9300, words: Words) -> Words:
-    display.send(words)
-    return reply_of(display)
+    return int(np.searchsorted(first.ends, differing[0], side="right")) if len(differing) else number
 
 
 def _differences(
@@ -115,8 +110,4 @@ def plain_values(display: Ramtek9300) -> dict[str, Any]:
 
 def to_json(value: Any) -> Any:
     """A value of a state for JSON; an array within it becomes its CRC-32."""
-    if isinstance(value, np.ndarray):
-        return f"{zlib.crc32(value.tobytes()):08x}"
-    if isinstance(value, dict):
-        return {key: to_json(item) for key, item in value.items()}
-    return [to_json(item) for item in value] if isinstance(value, tuple | list) else value
+    return to_plain(value, lambda array: f"{zlib.crc32(array.tobytes()):08x}")

@@ -11,8 +11,9 @@ from typing import Final, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
-from ramtek_emu.arrays import Dots, PackedColors, Words
-from ramtek_emu.inspection.replay import Replay, reply_of
+from ramtek_emu.arrays import AnyArray, Dots
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.watching import watched, watched_table
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Window
@@ -20,6 +21,16 @@ from ramtek_emu.memory.scan_orders import Window
 LOAD: Final = FORMAT_OF_NAME["LAM"].opcode
 """The only opcode that writes entries."""
 
+
+class EntryRange(NamedTuple):
+    """A range of entries of the lookup table: the first, and the end after the last."""
+
+    first: int
+    end: int
+
+
+Selection: TypeAlias = Window | EntryRange
+"""Pixels of the memory, or entries of the lookup table."""
 Result = TypeVar("Result")
 Search: TypeAlias = Generator[None, None, Result]
 """A search that pauses after each instruction, and returns its result at the end."""
@@ -43,33 +54,36 @@ def finished(search: Search[Result]) -> Result:
             return result
 
 
-def writes_to_pixel(replay: Replay, line: int, element: int, until: int) -> Search[list[Write]]:
-    """The writes to a word of the memory up to the instruction `until`, oldest first.
+def history_of(replay: Replay, selection: Selection, until: int) -> Search[list[Write]]:
+    """The writes to a pixel or an entry up to the instruction `until`, oldest first.
 
-    An instruction that writes the word several times is a single write.
+    An instruction that writes several times is a single write.
     """
-    writes = []
-    for change in _words_written(replay, Window(element, line, element, line), 0, until):
+    found = []
+    for change in _changes(replay, selection, 0, until):
         if change is not None:
-            writes.append(Write(change.number, int(change.before[0, 0]), int(change.after[0, 0])))
+            found.append(Write(change.number, change.before.item(), change.after.item()))
         yield
-    return writes
+    return found
 
 
-def next_change(replay: Replay, window: Window, after: int) -> Search[int | None]:
-    """The first instruction after `after` that changes a word in a window; None if none does."""
-    for change in _words_written(replay, window, after, len(replay.stream)):
+def next_change(replay: Replay, selection: Selection, after: int) -> Search[int | None]:
+    """The first instruction after `after` that changes a word or color of a selection, or None."""
+    for change in _changes(replay, selection, after, len(replay.stream)):
         if change is not None and not np.array_equal(change.before, change.after):
             return change.number
         yield
     return None
 
 
-def last_change(replay: Replay, window: Window, before: int) -> Search[int | None]:
-    """The last instruction before the instruction `before` that changes a word in a window, or None."""
-    for stretch in reversed([*replay.stretches(0, before - 1)]):
+def last_change(replay: Replay, selection: Selection, before: int) -> Search[int | None]:
+    """The last instruction before `before` that changes a word or color of a selection, or None."""
+    parts = [(0, before - 1)]
+    if isinstance(selection, Window):
+        parts = [(begin, end) for begin, end, _ in replay.stretches(selection, 0, before - 1)]
+    for begin, end in reversed(parts):
         number = None
-        for change in _words_written(replay, window, stretch.state.number, stretch.end):
+        for change in _changes(replay, selection, begin, end):
             if change is not None and not np.array_equal(change.before, change.after):
                 number = change.number
             yield
@@ -78,88 +92,52 @@ def last_change(replay: Replay, window: Window, before: int) -> Search[int | Non
     return None
 
 
-def writes_to_entry(replay: Replay, entry: int, until: int) -> Search[list[Write]]:
-    """The writes to an entry of the lookup table up to the instruction `until`, oldest first."""
-    writes = []
-    for load in _entries_written(replay, 0, until):
-        if load.touched[entry]:
-            writes.append(Write(load.number, int(load.before[entry]), int(load.after[entry])))
-        yield
-    return writes
-
-
-def next_entry_change(replay: Replay, first: int, end: int, after: int) -> Search[int | None]:
-    """The first instruction after `after` that changes a color of the entries from `first` to before `end`.
-
-    None if none does.
-    """
-    for load in _entries_written(replay, after, len(replay.stream)):
-        if not np.array_equal(load.before[first:end], load.after[first:end]):
-            return load.number
-        yield
-    return None
-
-
-def last_entry_change(replay: Replay, first: int, end: int, before: int) -> Search[int | None]:
-    """The last instruction before `before` that changes a color of the entries `first` to `end`, or None."""
-    number = None
-    for load in _entries_written(replay, 0, before - 1):
-        if not np.array_equal(load.before[first:end], load.after[first:end]):
-            number = load.number
-        yield
-    return number
-
-
-class WordsWritten(NamedTuple):
-    """An instruction that wrote to a window, with the words of the window before and after it."""
+class SelectionWrite(NamedTuple):
+    """An instruction that wrote to a selection, with its words or colors before and after."""
 
     number: int
-    before: Words
-    after: Words
+    before: AnyArray
+    after: AnyArray
 
 
-def _words_written(replay: Replay, window: Window, after: int, until: int) -> Iterator[WordsWritten | None]:
-    """The instructions that write to a window; for any other instruction, or a part of the stream, None."""
-    part = slice(window.top, window.bottom + 1), slice(window.left, window.right + 1)
-    for stretch in replay.stretches(after, until):
-        if not stretch.may_touch(part):
+def _changes(replay: Replay, selection: Selection, after: int, until: int) -> Iterator[SelectionWrite | None]:
+    """The instructions that write to a selection; None for any other instruction, or part of the stream."""
+    if isinstance(selection, EntryRange):
+        # No other instruction changes entries, so only loads are executed.
+        loads = np.flatnonzero(replay.stream.opcodes[after:until] == LOAD) + after + 1
+        display = replay.display_at(after)
+        touched = watched_table(display).watch()[selection.first : selection.end]
+        colors = display.lookup_table.packed[selection.first : selection.end]
+        yield from _noted(display, touched, colors, _executed(replay, display, loads.tolist()))
+        return
+    for begin, end, may_write in replay.stretches(selection, after, until):
+        if not may_write:
             yield None
             continue
-        display, begin = stretch.state.display(), max(stretch.state.number, after)
-        display.send(replay.stream.words_between(stretch.state.number, begin))
-        touched = watched(display).watch(window)
-        before = display.words[part].copy()
-        for number in replay.steps(display, begin, stretch.end):
-            reply_of(display)
-            if not touched.any():
-                yield None
-                continue
-            touched[...] = False
-            now = display.words[part].copy()
-            yield WordsWritten(number, before, now)
-            before = now
+        display = replay.display_at(begin)
+        touched = watched(display).watch(selection)
+        words = display.words[selection.top : selection.bottom + 1, selection.left : selection.right + 1]
+        yield from _noted(display, touched, words, replay.steps(display, begin, end))
 
 
-class EntriesWritten(NamedTuple):
-    """A load of the lookup table: the entries that it touched, and the colors of all before and after it."""
-
-    number: int
-    touched: Dots
-    before: PackedColors
-    after: PackedColors
-
-
-def _entries_written(replay: Replay, after: int, until: int) -> Iterator[EntriesWritten]:
-    """The loads of the lookup table. No other instruction changes entries, so only loads are executed."""
-    state = replay.state_before(after)
-    display = state.display()
-    touched = watched_table(display).watch()
-    loads = np.flatnonzero(replay.stream.opcodes[state.number : until] == LOAD) + state.number + 1
-    before = display.lookup_table.packed.copy()
-    for number in loads.tolist():
-        touched[...] = False
+def _executed(replay: Replay, display: Ramtek9300, numbers: list[int]) -> Iterator[int]:
+    """Execute some instructions, and pause after each."""
+    for number in numbers:
         display.send(replay.stream.words_between(number - 1, number))
-        now = display.lookup_table.packed.copy()
-        if number > after:
-            yield EntriesWritten(number, touched, before, now)
+        yield number
+
+
+def _noted(
+    display: Ramtek9300, touched: Dots, memory: AnyArray, numbers: Iterator[int]
+) -> Iterator[SelectionWrite | None]:
+    """The changes of a part of a memory that executed instructions touch."""
+    before = memory.copy()
+    for number in numbers:
+        display.processor.clear_replies()
+        if not touched.any():
+            yield None
+            continue
+        touched[...] = False
+        now = memory.copy()
+        yield SelectionWrite(number, before, now)
         before = now

@@ -23,6 +23,7 @@ from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.overlay import KEYS
 from ramtek_emu.monitor.window import LEFT, RIGHT, TICK_MILLISECONDS, Key, Monitor, Pointer
 from ramtek_emu.snapshot import snapshot_bytes
+from ramtek_emu.video.scan_out import next_table
 from ramtek_emu.writing import PNG, write_numbered
 
 WHEEL_ROWS: Final = 3
@@ -201,6 +202,15 @@ def point_at(session: Inspection, place: Point | None = None, entry: int | None 
     return replace(session, pointer=place, pointed_entry=entry)
 
 
+def turn_table(session: Inspection) -> Inspection:
+    """Show the words through the next table of grays, or again through the table of the display."""
+    name = next_table(display_of(session).scan_out.shown_table)
+    displays = [session.replay.display, *([session.host.display] if session.host is not None else ())]
+    for display in displays:
+        display.scan_out.shown_table = name
+    return sessions.tell(session, f"the table {name}" if name else "the display's table")
+
+
 def save_snapshot(session: Inspection) -> Inspection:
     """Save the display under the next free number, and show the path."""
     try:
@@ -256,6 +266,7 @@ BINDINGS: Final = (
         "F4", "the entries of the lookup table, and back", ("f4",),
         lambda session: sessions.turn_to(session, "entries"), "entries", True,
     ),
+    KeyBinding("F2", KEYS[1][1], ("f2",), turn_table, "table", True),
     KeyBinding("S", "save a numbered snapshot of the display", ("s",), save_snapshot, "snapshot", True),
     KeyBinding("Esc", "stop, close the page, or clear the selection", ("escape",), sessions.escape),
     KeyBinding(

@@ -13,16 +13,17 @@ from bisect import bisect_right
 from collections.abc import Iterator
 from operator import attrgetter
 from time import perf_counter, thread_time
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Dots, Words
+from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection.states import Packer, State, packed_dots, size_of, thinned, unpacked_dots
+from ramtek_emu.inspection.states import Packer, State, size_of, thinned
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.inspection.watching import watched
 from ramtek_emu.instruction_set.instruction import NO_WORDS
+from ramtek_emu.memory.scan_orders import Window
 
 STATE_SECONDS: Final = 0.02
 """How long the instructions between two states take."""
@@ -30,6 +31,8 @@ STATE_BYTES: Final = 64
 """Limit: the bytes of states for each word of the stream, on average."""
 LEAST_STATE_BYTES: Final = 64 << 20
 """Limit: the bytes of states that even a short stream may take."""
+STEPS_AT_ONCE: Final = 256
+"""The number of instructions that a display is given at once while states are kept."""
 
 
 class Replay:
@@ -49,8 +52,9 @@ class Replay:
         self._states: list[State] = []
         begin = Ramtek9300(stream.configuration) if start is None else start
         self._keep(self._packer.pack(begin, 0, NO_WORDS))
-        self.display = self._states[0].display()
-        """The display after `number` instructions. `go_to` may replace it."""
+        self.display = self.display_at(0)
+        """The display after `number` instructions."""
+        self.display.scan_out.shown_table = begin.scan_out.shown_table
         self._preparing = self._prepare()
 
     def __repr__(self) -> str:
@@ -79,7 +83,8 @@ class Replay:
 
     def _prepare(self) -> Iterator[None]:
         """Run a display over the stream, and keep states; pauses after each instruction."""
-        display, number = self._states[-1].display(), self.prepared
+        number = self.prepared
+        display = self.display_at(number)
         while number < len(self.stream):
             due = thread_time() + self._seconds
             touched = watched(display).watch(display.frame_buffer.window)
@@ -89,7 +94,7 @@ class Replay:
                 if thread_time() >= due:
                     break
                 yield
-            self._keep(self._packer.pack(display, number, reply, packed_dots(touched)))
+            self._keep(self._packer.pack(display, number, reply, np.packbits(touched, axis=1)))
             yield
 
     def _keep(self, state: State) -> None:
@@ -110,8 +115,11 @@ class Replay:
         The display must be between two instructions. With `has_moved`, something other than an instruction
         has changed it, such as its joystick or a reset, and a state is due.
         """
+        count, end = len(self.stream), self.stream.ends[-1]
         self.stream.append(words)
-        if has_moved or thread_time() >= self._due:
+        # The last state is within a row of illegal words if the row goes on; replace it.
+        was_within = self.prepared == count and self.stream.ends[count] > end
+        if has_moved or was_within or thread_time() >= self._due:
             self._keep(self._packer.pack(display, len(self.stream), None))
             self._due = thread_time() + self._seconds
 
@@ -119,59 +127,52 @@ class Replay:
         """Bring the display to an instruction, forward or back."""
         state = self.state_before(number)
         if not state.number < self.number <= number:
-            self.display, self.number, self.reply = state.display(), state.number, state.reply
+            state.restore(self.display)
+            self.number, self.reply = state.number, state.reply
         if number > self.number:
-            words_before = self.stream.words_between(self.number, number - 1)
-            self.display.send(words_before)
-            reply_of(self.display)
+            self._run(self.display, self.number, number - 1)
             self.display.send(self.stream.words_between(number - 1, number))
             self.number, self.reply = number, reply_of(self.display)
+
+    def display_at(self, number: int) -> Ramtek9300:
+        """A new display after `number` instructions."""
+        display, state = Ramtek9300(self.stream.configuration), self.state_before(number)
+        state.restore(display)
+        self._run(display, state.number, number)
+        return display
+
+    def _run(self, display: Ramtek9300, after: int, until: int) -> None:
+        """Execute instructions, and drop their replies."""
+        display.send(self.stream.words_between(after, until))
+        display.processor.clear_replies()
 
     def state_before(self, number: int) -> State:
         """The last state that was kept before an instruction, or after it exactly."""
         return self._states[bisect_right(self._states, number, key=attrgetter("number")) - 1]
 
-    def stretches(self, after: int, until: int) -> Iterator[Stretch]:
-        """The parts of the stream between states that hold the instructions after `after` up to `until`."""
-        states = self._states
-        for index, state in enumerate(states):
-            following = states[index + 1] if index + 1 < len(states) else None
-            end = until if following is None else min(following.number, until)
-            if end > max(state.number, after):
-                yield Stretch(state, end, None if following is None else self._touched(following))
+    def stretches(self, window: Window, after: int, until: int) -> Iterator[tuple[int, int, bool]]:
+        """The parts of the stream between states, from the instruction after `after` up to `until`.
 
-    def _touched(self, state: State) -> Dots | None:
-        shape = self.display.words.shape
-        return None if state.touched is None else unpacked_dots(state.touched, (shape[0], shape[1]))
+        Yields the number before each part, its last number, and whether it may write to a window.
+        """
+        for state, following in zip(self._states, [*self._states[1:], None], strict=True):
+            begin = max(state.number, after)
+            end = until if following is None else min(following.number, until)
+            if end > begin:
+                yield begin, end, following is None or following.may_touch(window)
 
     def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
-        """Run a display from `number` to `end`; yields the number after each instruction.
-
-        Consecutive illegal words are one step.
-        """
-        ends = self.stream.ends[number : end + 1] - self.stream.ends[number]
-        place = index = 0
-        for used in display.send_stepwise(self.stream.words_between(number, end)):
-            # A long instruction pauses with the count of the words before it.
-            if used > place:
-                place = used
-                index += 1
-                if ends[index] < used:
-                    index = int(np.searchsorted(ends, used))
-                yield number + index
-
-
-class Stretch(NamedTuple):
-    """Consecutive instructions after a state, up to the instruction `end`."""
-
-    state: State
-    end: int
-    touched: Dots | None
-    """The (lines, elements) words that the stretch writes, or more; None if they are not known."""
-
-    def may_touch(self, part: tuple[slice, slice]) -> bool:
-        """Whether a word of a part of the memory may be written."""
-        return self.touched is None or bool(self.touched[part].any())
+        """Run a display from `number` to `end`; yields the number after each instruction."""
+        while number < end:
+            # The decoder looks at all words that it is given before the first instruction is executed.
+            piece = self.stream.words_between(number, min(number + STEPS_AT_ONCE, end))
+            place = 0
+            for used in display.send_stepwise(piece):
+                # A long instruction pauses with the count of the words before it.
+                if used > place:
+                    place = used
+                    number += 1
+                    yield number
 
 
 def reply_of(display: Ramtek9300) -> Words:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.host.server import HOST_SECONDS, Gate
+from ramtek_emu.host.server import HOST_SECONDS, HostSession, Record
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.instruction import NO_WORDS
@@ -28,12 +28,14 @@ MOST_BYTES: Final = 1 << 28
 class RunningHost:
     """The host of a running display, which a session may stop."""
 
-    def __init__(self, display: Ramtek9300) -> None:
+    def __init__(self, display: Ramtek9300, also: Record | None = None) -> None:
+        """Follow the host of a display; `also` records its instructions, too."""
         self.display = display
-        self.gate = Gate()
-        """The gate for the sessions of the hosts."""
+        self.session = HostSession(display, self.record)
+        """The session of the hosts; a server's own session takes its place."""
+        self._also = also
         self.step: Callable[[float], bool] = lambda _: False
-        """Executes a piece of a host's words, as far as the gate allows.
+        """Executes a piece of a host's words, as far as the session allows.
 
         It waits up to so many seconds for words, and returns whether it has done anything.
         """
@@ -53,8 +55,10 @@ class RunningHost:
 
     def record(self, data: bytes) -> None:
         """Note the bytes of whole instructions that the display has executed."""
+        if self._also is not None:
+            self._also(data)
         words = np.frombuffer(data, "<u2").astype(np.uint16)
-        if self.gate.is_within:
+        if self.session.is_within:
             # The display has begun another instruction, so that its state cannot be kept.
             self.replay.stream.append(words)
             return
@@ -77,12 +81,12 @@ class RunningHost:
         """
         self.obey()
         self._has_moved |= cursor_states(self.display.cursors) != self._cursors
-        if self._has_moved and not self.gate.is_within:
+        if self._has_moved and not self.session.is_within:
             self._note(NO_WORDS)
-        self.gate.left = instructions
+        self.session.allowed = instructions
         end = time.monotonic() + PIECE_SECONDS
         is_done = not self.step(HOST_SECONDS if instructions != 0 and self.is_connected() else 0.0)
-        while not is_done and not self.gate.is_closed and time.monotonic() < end:
+        while not is_done and self.session.allowed != 0 and time.monotonic() < end:
             is_done = not self.step(0.0)
         self._cursors = cursor_states(self.display.cursors)
 

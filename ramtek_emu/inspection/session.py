@@ -19,7 +19,8 @@ import numpy as np
 from ramtek_emu.arrays import Dots
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection import histories
-from ramtek_emu.inspection.histories import Search, Write
+from ramtek_emu.inspection.histories import EntryRange as EntryRange
+from ramtek_emu.inspection.histories import Search, Selection, Write
 from ramtek_emu.inspection.listing import meaning_of, moved, next_with, pattern_of, rows_from
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
@@ -41,17 +42,6 @@ PARAMETERS: Final = (
     "base_line", "scroll", "display_class", "image_mode", "zoom", "origin_at_bottom", "font",
 )  # fmt: skip
 """The parameters in the order of the panel; two more values of the display follow."""
-
-
-class EntryRange(NamedTuple):
-    """A range of entries of the lookup table: the first, and the end after the last."""
-
-    first: int
-    end: int
-
-
-Selection = Window | EntryRange | None
-"""A rectangle of the memory, entries, or nothing."""
 
 
 class PendingSearch(NamedTuple):
@@ -87,7 +77,7 @@ class Inspection:
     pointer: Point | None = None
     pointed_entry: int | None = None
     """The entry under the pointer, on the page of entries."""
-    selection: Selection = None
+    selection: Selection | None = None
     writes: tuple[Write, ...] | None = None
     """The instructions that wrote the selected pixel or entry, newest first; None if nothing was asked."""
     writes_until: int = 0
@@ -185,12 +175,11 @@ def _standing(session: Inspection, number: int) -> Inspection:
         replay.go_to(number - 1)
         display = replay.display
         written = watched(display).watch(display.frame_buffer.window)
-        replay.go_to(number)
-        if replay.display is not display:
-            # A state was prepared here, so that the instruction was not executed.
+        if replay.state_before(number).number == number:
+            # The state that was kept here is restored without executing the instruction.
             display.send(replay.stream.words_between(number - 1, number))
-    else:
-        replay.go_to(0)
+            written = written.copy()
+    replay.go_to(number)
     return replace(
         session, number=number, target=number, prepared=replay.prepared, written=written, before=before
     )
@@ -346,13 +335,8 @@ def next_change(session: Inspection, back: bool = False) -> Inspection:
     selection, target, host = session.selection, session.target, session.host
     if selection is None:
         return tell(session, "drag a rectangle on the field, or click a pixel or an entry first")
-    if isinstance(selection, EntryRange):
-        search = histories.next_entry_change if not back else histories.last_entry_change
-        changes = search(session.replay, selection.first, selection.end, target)
-    else:
-        changes = (histories.last_change if back else histories.next_change)(
-            session.replay, selection, target
-        )
+    search = histories.last_change if back else histories.next_change
+    changes = search(session.replay, selection, target)
 
     def found(session: Inspection, number: int | None) -> Inspection:
         if number is not None:
@@ -367,7 +351,7 @@ def next_change(session: Inspection, back: bool = False) -> Inspection:
     return _started(session, f"a change of {selection_text(selection)}", PendingSearch(changes, found))
 
 
-def select(session: Inspection, selection: Selection, is_final: bool = True) -> Inspection:
+def select(session: Inspection, selection: Selection | None, is_final: bool = True) -> Inspection:
     """Select a rectangle of the memory, entries, or nothing.
 
     If the selection is final, the history of a single pixel or entry is searched for.
@@ -379,18 +363,20 @@ def select(session: Inspection, selection: Selection, is_final: bool = True) -> 
     until = session.target
     session = replace(session, writes_until=until)
     if isinstance(selection, EntryRange):
-        is_single = selection.end - selection.first == 1
-        search = histories.writes_to_entry(session.replay, selection.first, until)
+        size = selection.end - selection.first
     else:
-        is_single = selection.width == selection.height == 1
-        search = histories.writes_to_pixel(session.replay, selection.top, selection.left, until)
-    if not is_single:
+        size = selection.width * selection.height
+    if size != 1:
         return session
 
     def found(session: Inspection, writes: Sequence[Write]) -> Inspection:
         return replace(session, writes=tuple(reversed(writes)), message="")
 
-    return _started(session, f"writes of {selection_text(selection)}", PendingSearch(search, found))
+    return _started(
+        session,
+        f"writes of {selection_text(selection)}",
+        PendingSearch(histories.history_of(session.replay, selection, until), found),
+    )
 
 
 def next_write(session: Inspection, back: bool) -> Inspection:
@@ -523,14 +509,14 @@ def value_text(name: str, value: Any) -> str:
     return ",".join(map(str, numbers))
 
 
-def selected_values(display: Ramtek9300, selection: Window | EntryRange) -> bytes:
+def selected_values(display: Ramtek9300, selection: Selection) -> bytes:
     """The words of a window, or the colors of entries, to compare."""
     if isinstance(selection, EntryRange):
         return display.lookup_table.packed[selection.first : selection.end].tobytes()
     return display.words[selection.top : selection.bottom + 1, selection.left : selection.right + 1].tobytes()
 
 
-def selection_text(selection: Window | EntryRange) -> str:
+def selection_text(selection: Selection) -> str:
     """A selection in words."""
     if isinstance(selection, EntryRange):
         if selection.end - selection.first == 1:

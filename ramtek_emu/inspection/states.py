@@ -1,7 +1,7 @@
-"""States: displays packed into little memory; consecutive states share equal blocks.
+"""States: what displays are, packed into little memory; consecutive states share equal blocks.
 
-A state is a pickled display. Its arrays are cut into blocks. A block that equals the block of the state
-before is the same object, and the others are deflated.
+A state is `Ramtek9300.state()`, pickled. Its arrays are cut into blocks. A block that equals the block of the
+state before is the same object, and the others are deflated.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Dots, Words
+from ramtek_emu.arrays import Bytes, Words
 from ramtek_emu.display import Ramtek9300
+from ramtek_emu.memory.scan_orders import Window
 
 BLOCK: Final = 1 << 14
 """The bytes of a block: about a line in forty of a picture."""
@@ -28,24 +29,26 @@ class State:
 
     number: int
     data: bytes
-    """The pickled display without its arrays."""
+    """The pickled state without its arrays."""
     arrays: tuple[tuple[bytes, ...], ...] = field(repr=False)
     """The blocks of the arrays, deflated."""
     reply: Words | None
     """The reply of the last instruction; None if it is not known."""
-    touched: bytes | None = None
-    """The words written since the state before, a bit each; None if they are not known."""
+    touched: Bytes | None = field(default=None, repr=False)
+    """The words written since the state before, as `np.packbits(dots, axis=1)`; None if not known."""
 
-    def display(self) -> Ramtek9300:
-        """A new display in this state.
+    def restore(self, display: Ramtek9300) -> None:
+        """Bring a display to this state."""
+        buffers = [b"".join(map(zlib.decompress, blocks)) for blocks in self.arrays]
+        display.restore(pickle.loads(self.data, buffers=buffers))
 
-        The words of an incomplete instruction, and replies that wait, belong to a host and are left out.
-        """
-        buffers = [bytearray().join(map(zlib.decompress, blocks)) for blocks in self.arrays]
-        display: Ramtek9300 = pickle.loads(self.data, buffers=buffers)
-        display.decoder.clear()
-        display.processor.clear_replies()
-        return display
+    def may_touch(self, window: Window) -> bool:
+        """Whether a word of a window within the memory may have been written since the state before."""
+        if self.touched is None:
+            return True
+        part = self.touched[window.top : window.bottom + 1, window.left // 8 : window.right // 8 + 1]
+        first = window.left % 8
+        return bool(np.unpackbits(part, axis=1)[:, first : first + window.width].any())
 
 
 class Packer:
@@ -56,11 +59,11 @@ class Packer:
         """The arrays of the last state, whole and as deflated blocks."""
 
     def pack(
-        self, display: Ramtek9300, number: int, reply: Words | None, touched: bytes | None = None
+        self, display: Ramtek9300, number: int, reply: Words | None, touched: Bytes | None = None
     ) -> State:
         """The state of a display between two instructions."""
         buffers: list[pickle.PickleBuffer] = []
-        data = pickle.dumps(display, protocol=5, buffer_callback=buffers.append)
+        data = pickle.dumps(display.state(), protocol=5, buffer_callback=buffers.append)
         arrays = [buffer.raw().tobytes() for buffer in buffers]
         packed = []
         for position, array in enumerate(arrays):
@@ -80,36 +83,17 @@ class Packer:
 def size_of(states: list[State]) -> int:
     """The bytes of states; shared blocks count once."""
     blocks = {id(block): len(block) for state in states for array in state.arrays for block in array}
-    own = sum(len(state.data) + len(state.touched or b"") for state in states)
-    return own + sum(blocks.values()) + sum(state.reply.nbytes for state in states if state.reply is not None)
+    beside = (array for state in states for array in (state.reply, state.touched) if array is not None)
+    return sum(blocks.values()) + sum(len(state.data) for state in states) + sum(a.nbytes for a in beside)
 
 
 def thinned(states: list[State]) -> list[State]:
     """Every second state from the first on, and the last."""
-    fewer, dropped = [states[0]], None
-    for index, state in enumerate(states[1:], 1):
-        if index % 2 and index < len(states) - 1:
-            dropped = state
+    first, *rest = states
+    joined = []
+    for one, other in zip(rest[::2], rest[1::2], strict=False):
+        if one.touched is None or other.touched is None:
+            joined.append(replace(other, touched=None))
         else:
-            fewer.append(state if dropped is None else replace(state, touched=_joined(dropped, state)))
-            dropped = None
-    return fewer
-
-
-def _joined(first: State, second: State) -> bytes | None:
-    """What was touched before either of two states; None if it is not known."""
-    if first.touched is None or second.touched is None:
-        return None
-    bits = [np.frombuffer(each, np.uint8) for each in (first.touched, second.touched)]
-    return (bits[0] | bits[1]).tobytes()
-
-
-def packed_dots(dots: Dots) -> bytes:
-    """Dots as bits. Measured: deflating them would take as long as all else when states are dropped."""
-    return np.packbits(dots).tobytes()
-
-
-def unpacked_dots(packed: bytes, shape: tuple[int, int]) -> Dots:
-    """The (lines, elements) dots of `packed_dots`."""
-    bits = np.frombuffer(packed, np.uint8)
-    return np.unpackbits(bits, count=shape[0] * shape[1]).view(np.bool_).reshape(shape)
+            joined.append(replace(other, touched=one.touched | other.touched))
+    return [first, *joined, *rest[2 * len(joined) :]]

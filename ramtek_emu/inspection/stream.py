@@ -1,24 +1,19 @@
-"""Stream: words as numbered instructions, counted as `ramtek list` shows them.
+"""Stream: words as numbered instructions, counted as `ramtek list --json` counts them.
 
-Instruction 1 is the first; 0 stands for power-on. An illegal word counts as an instruction.
+Instruction 1 is the first; 0 stands for power-on. A row of illegal words is one instruction.
 """
 
 from __future__ import annotations
 
-from array import array
-from dataclasses import replace
-from typing import Final, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from ramtek_emu.arrays import AnyArray, Bytes, Indices, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
-from ramtek_emu.instruction_set.decoder import MOST_HEAD, formats_of_opcodes, words_needed
-from ramtek_emu.instruction_set.disassembler import ListingItem, items
-from ramtek_emu.instruction_set.table import ILLEGAL, Flags
-
-PIECE: Final = 1 << 16
-"""How many words are converted to Python's numbers at once."""
+from ramtek_emu.instruction_set.decoder import lengths, words_that_begin
+from ramtek_emu.instruction_set.disassembler import ListingItem, item_of
+from ramtek_emu.instruction_set.instruction import NO_WORDS
 
 Array = TypeVar("Array", bound=AnyArray)
 
@@ -26,14 +21,13 @@ Array = TypeVar("Array", bound=AnyArray)
 class Stream:
     """Words for a display, with the place of each instruction; more words can be appended."""
 
-    def __init__(self, configuration: Configuration = GMR_9300, words: Words | None = None) -> None:
+    def __init__(self, configuration: Configuration = GMR_9300, words: Words = NO_WORDS) -> None:
         self.configuration = configuration
-        self._words: Words = np.zeros(0, np.uint16)
+        self._words = words
         self._word_count = 0
         self._ends: Indices = np.zeros(1, np.int64)
         self._count = 0
-        if words is not None:
-            self.append(words)
+        self.append(words)
 
     def __len__(self) -> int:
         """The number of whole instructions."""
@@ -58,34 +52,23 @@ class Stream:
         return (self._words[self.ends[:-1]] >> 8).astype(np.uint8)
 
     def append(self, words: Words) -> None:
-        """Append words; an instruction may be cut anywhere."""
-        self._words = _with_room(self._words, self._word_count, len(words))
-        self._words[self._word_count : self._word_count + len(words)] = words
+        """Append words; an instruction may be cut anywhere.
+
+        Illegal words that follow illegal words at once belong to the same instruction, whose end moves on.
+        """
+        begin, extended = int(self._ends[self._count]), self.configuration.extended
+        if words is not self._words:
+            self._words = _with_room(self._words, self._word_count, len(words))
+            self._words[self._word_count : self._word_count + len(words)] = words
         self._word_count += len(words)
-        ends = self._ends_from(int(self._ends[self._count]))
+        ends = np.array(lengths(self.words[begin:], extended)[0], np.int64) + begin
+        if self._count and len(ends):
+            legal = words_that_begin(extended)
+            if not legal[self._words[[self.place(self._count), begin]]].any():
+                self._count -= 1
         self._ends = _with_room(self._ends, self._count + 1, len(ends))
         self._ends[self._count + 1 : self._count + 1 + len(ends)] = ends
         self._count += len(ends)
-
-    def _ends_from(self, place: int) -> array[int]:
-        """The ends of the whole instructions from a place on, 64 bits each."""
-        extended = self.configuration.extended
-        formats = formats_of_opcodes(extended)
-        ends = array("q")
-        while place < self._word_count:
-            # Numbers of Python are faster here than those of numpy.
-            first, words = place, self.words[place : place + PIECE + MOST_HEAD].tolist()
-            end = min(first + PIECE, self._word_count)
-            while place < end:
-                head = words[place - first : place - first + MOST_HEAD]
-                format = formats[head[0] >> 8]
-                if not extended and format.is_normal and head[0] & Flags.OPERANDS_2:
-                    format = ILLEGAL
-                place += words_needed(format, head)
-                if place > self._word_count:
-                    return ends
-                ends.append(place)
-        return ends
 
     def place(self, number: int) -> int:
         """The index of the first word of an instruction."""
@@ -98,8 +81,7 @@ class Stream:
     def item(self, number: int) -> ListingItem:
         """An instruction as `ramtek list` shows it."""
         words = self.words_between(number - 1, number)
-        (item,) = items([words.astype("<u2", copy=False).tobytes()], self.configuration)
-        return replace(item, place=self.place(number))
+        return item_of(self.place(number), words, self.configuration.extended)
 
 
 def _with_room(items: Array, used: int, more: int) -> Array:

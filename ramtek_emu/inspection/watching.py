@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Numbers, Words
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.memory.frame_buffer import EVERYTHING, FrameBuffer, WriteEnable, part_of
+from ramtek_emu.memory.frame_buffer import EVERYTHING, FrameBuffer, WriteEnable, inside_of, part_of
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.scan_orders import ScanOrder, Window
-
-NOTED: Final = ("_watched", "_touched")
-"""Attributes that a copy does not have."""
 
 
 class WatchedFrameBuffer(FrameBuffer):
@@ -21,9 +16,6 @@ class WatchedFrameBuffer(FrameBuffer):
 
     _watched: Window | None = None
     _touched: Dots
-
-    def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in super().__getstate__().items() if name not in NOTED}
 
     def watch(self, window: Window) -> Dots:
         """Note all writes to a window from now on; returns (lines, elements) dots that become true."""
@@ -41,8 +33,7 @@ class WatchedFrameBuffer(FrameBuffer):
         """Write points, and note those in the watched window."""
         if self._watched is not None and enable.mask & self._every_plane:
             inside = self._watched.intersection(enable.window)
-            seen = (elements >= inside.left) & (elements <= inside.right)
-            seen &= (lines >= inside.top) & (lines <= inside.bottom)
+            seen = inside_of(inside, elements, lines)
             self._touched[lines[seen] - self._watched.top, elements[seen] - self._watched.left] = True
         super().write_points(elements, lines, words, enable)
 

@@ -6,8 +6,8 @@
 
 On the left are the index of the first word in the stream and the words; on the right is their meaning. The
 assembler reads only the right side, and returns exactly the words on the left, for any words. `raw` marks
-words that cannot be shown as an instruction: an illegal word, an instruction that the end of the stream cuts
-off, or an instruction with flag bits that no source names. All data are listed; `0010*640` is 640 times 0010.
+words that cannot be shown as an instruction: illegal words, an instruction that the end of the stream cuts
+off, or an instruction with flags that name nothing. All data are listed; `0010*640` is 640 times 0010.
 """
 
 from __future__ import annotations
@@ -21,20 +21,19 @@ import numpy as np
 
 from ramtek_emu.arrays import Words
 from ramtek_emu.configuration import GMR_9300, Configuration
-from ramtek_emu.instruction_set.decoder import Decoder
-from ramtek_emu.instruction_set.instruction import Instruction, encode
+from ramtek_emu.instruction_set.decoder import Decoder, instruction_of
+from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction, encode
 from ramtek_emu.instruction_set.table import (
-    ADDRESSING_NAMES,
-    FLAG_NAMES,
+    FLAG_OF_NAME,
     ILLEGAL,
     OPERANDS,
-    OPERANDS_1,
-    OPERANDS_2,
     Flags,
 )
 
 WORDS_PER_LINE: Final = 6
 """The largest number of words on the left of a line."""
+RUN_WORDS: Final = 1 << 15
+"""The most words of a line on the right."""
 IN_HEXADECIMAL: Final = frozenset(("mask", "read_mask", "texture", "scale", "conic"))
 NUMBERS: Final = frozenset(("address", "element", "line"))
 """Operands of special instructions that are listed as numbers; all others are listed in hexadecimal."""
@@ -43,6 +42,8 @@ SIGNED: Final = frozenset(
 )
 VERTICES: Final = frozenset(("WVL", "WVU", "WPT"))
 """Instructions whose data are points."""
+
+ILLEGAL_NOTE: Final = "begins no instruction"
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,23 +61,23 @@ class ListingItem:
     def lines(self) -> Iterator[str]:
         """The lines of the listing: words on the left, their meaning on the right."""
         if self.odd_byte:
-            yield _line(self.place, "", f"byte {self.odd_byte[0]:02X} ; {self.note}")
+            yield _line(self.place, NO_WORDS, f"byte {self.odd_byte[0]:02X} ; {self.note}")
             return
+        place = self.place
         if self.instruction is None:
-            for first in range(0, len(self.words), WORDS_PER_LINE):
-                part = _hexadecimal(self.words[first : first + WORDS_PER_LINE])
-                yield _line(self.place + first, part, f"raw {part} ; {self.note}")
-            return
-        head = len(self.words) - len(self.instruction.data)
-        text = head_text(self.instruction)
-        for first in range(0, head, WORDS_PER_LINE):
-            yield _line(
-                self.place + first, _hexadecimal(self.words[first : min(head, first + WORDS_PER_LINE)]), text
+            rest = ((words, f"raw {text} ; {self.note}") for words, text in runs(self.words))
+        else:
+            head, text = (
+                self.words[: len(self.words) - len(self.instruction.data)],
+                head_text(self.instruction),
             )
-            text = ""
-        place = self.place + head
-        for words, text in data_texts(self.instruction):
-            yield _line(place, _hexadecimal(words) if len(words) <= WORDS_PER_LINE else "", f"  {text}")
+            for first in range(0, len(head), WORDS_PER_LINE):
+                yield _line(place + first, head[first : first + WORDS_PER_LINE], text)
+                text = ""
+            place += len(head)
+            rest = ((words, f"  {text}") for words, text in data_texts(self.instruction))
+        for words, text in rest:
+            yield _line(place, words, text)
             place += len(words)
 
     def to_plain(self, with_words: bool = True) -> dict[str, Any]:
@@ -99,59 +100,66 @@ class ListingItem:
 
 
 def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> Iterator[ListingItem]:
-    """The items of a stream; its bytes, low byte first, may be cut anywhere into pieces."""
+    """The items of a stream; its bytes, low byte first, may be cut anywhere into pieces.
+
+    A row of illegal words is one item, even if the pieces cut it.
+    """
     decoder = Decoder(configuration)
-    place, odd_byte = 0, b""
-    rest: Words = np.zeros(0, np.uint16)
+    place, odd_byte, row = 0, b"", bytearray()
     for piece in pieces:
         data = odd_byte + piece
         odd_byte = data[len(data) & ~1 :]
-        words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16)
-        rest = np.concatenate((rest, words))
-        taken = 0
-        for instruction in decoder.feed(words):
-            encoded = encode(instruction)
-            item = rest[taken : taken + len(encoded)]
-            if instruction.format is ILLEGAL:
-                yield ListingItem(place, item, None, "begins no instruction")
-            elif np.array_equal(item, encoded):
-                yield ListingItem(place, item, instruction)
-            else:
-                yield ListingItem(
-                    place, item, None, f"{instruction.format.name} with flag bits that no source names"
-                )
-            taken += len(encoded)
-            place += len(encoded)
-        rest = rest[taken:]
-    if len(rest):
-        yield ListingItem(place, rest, None, "the stream ends within this instruction")
+        for words in decoder.split(np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)):
+            item = item_of(place, words, configuration.extended)
+            place += len(words)
+            if item.note == ILLEGAL_NOTE:
+                row += words.tobytes()
+                continue
+            if row:
+                yield raw(item.place, row, ILLEGAL_NOTE)
+                row = bytearray()
+            yield item
+    if row:
+        yield raw(place, row, ILLEGAL_NOTE)
+    place += decoder.pending_words
+    if decoder.pending:
+        yield raw(place, decoder.pending, "the stream ends within this instruction")
     if odd_byte:
-        yield ListingItem(place + len(rest), rest[:0], None, "half a word at the end of the stream", odd_byte)
+        yield ListingItem(place, NO_WORDS, None, "half a word at the end of the stream", odd_byte)
+
+
+def raw(end: int, data: bytearray, note: str) -> ListingItem:
+    """The item of words that end at a place of the stream and are no instruction, from their bytes."""
+    return ListingItem(end - len(data) // 2, np.frombuffer(data, np.uint16), None, note)
+
+
+def item_of(place: int, words: Words, extended: bool) -> ListingItem:
+    """The item of a whole instruction, or of a row of illegal words, at a place of the stream."""
+    instruction = instruction_of(words, extended)
+    if instruction.format is ILLEGAL:
+        return ListingItem(place, words, None, ILLEGAL_NOTE)
+    if np.array_equal(words, encode(instruction)):
+        return ListingItem(place, words, instruction)
+    return ListingItem(place, words, None, f"{instruction.format.name} with flags that name nothing")
 
 
 def flag_names(low_byte: int) -> list[str]:
     """The names of the flags; flags that follow from the operands and the data are left out."""
-    names = [name for flag, name in FLAG_NAMES.items() if low_byte & flag]
-    addressing = ADDRESSING_NAMES.get(low_byte & Flags.ADDRESSING)
-    return names if addressing is None else [*names, addressing]
+    addressing = low_byte & Flags.ADDRESSING
+    return [
+        name
+        for name, flag in FLAG_OF_NAME.items()
+        if (addressing == flag if flag & Flags.ADDRESSING else low_byte & flag)
+    ]
 
 
 def head_text(instruction: Instruction) -> str:
     """The text of an instruction without its data: name, flags, operands, length."""
-    format = instruction.format
-    parts = [format.name]
-    if format.is_normal:
-        parts += flag_names(instruction.low_byte)
-        for flag, name, operands in (
-            (Flags.OPERANDS_1, "OF1", OPERANDS_1),
-            (Flags.OPERANDS_2, "OF2", OPERANDS_2),
-        ):
-            if instruction.low_byte & flag and not any(
-                operand.name in instruction.operands for operand in operands
-            ):
-                parts.append(name)
-    elif instruction.low_byte:
-        parts.append(f"#{instruction.low_byte}")
+    low_byte, parts = instruction.low_byte, [instruction.format.name]
+    if instruction.format.is_normal:
+        parts += flag_names(low_byte)
+    elif low_byte:
+        parts.append(f"#{low_byte}")
     for name, words in instruction.operands.items():
         mnemonic = OPERANDS[name].mnemonic if name in OPERANDS else name
         parts.append(f"{mnemonic}={operand_text(name, words)}" if words else mnemonic)
@@ -174,44 +182,40 @@ def operand_text(name: str, words: tuple[int, ...]) -> str:
 def data_texts(instruction: Instruction) -> Iterator[tuple[Words, str]]:
     """Yields the data of an instruction by lines: the words and their text."""
     data, name = instruction.data, instruction.format.name
-    length = instruction.length or 0
     if name in VERTICES and len(data) % 2 == 0:
-        points = data.view(np.int16).reshape(-1, 2)
-        for first in range(0, len(points), WORDS_PER_LINE // 2):
-            part = points[first : first + WORDS_PER_LINE // 2].tolist()
-            text = "to " + "  ".join(f"{element},{line}" for element, line in part)
-            yield data[2 * first : 2 * first + WORDS_PER_LINE], text
-    elif name == "WT" and len(data) and not _has_pad(instruction, length):
+        for first in range(0, len(data), WORDS_PER_LINE):
+            part = data[first : first + WORDS_PER_LINE]
+            points = part.view(np.int16).reshape(-1, 2).tolist()
+            yield part, "to " + "  ".join(f"{element},{line}" for element, line in points)
+    elif name == "WT" and len(data) and not _has_pad(instruction):
         codes = instruction.data_bytes()
         for first in range(0, len(data), WORDS_PER_LINE):
-            part = codes[2 * first : 2 * (first + WORDS_PER_LINE)]
-            yield data[first : first + WORDS_PER_LINE], f'text "{"".join(map(_character, part))}"'
+            text = "".join(map(_character, codes[2 * first : 2 * (first + WORDS_PER_LINE)]))
+            yield data[first : first + WORDS_PER_LINE], f'text "{text}"'
     else:
-        yield from _runs(data)
+        for words, text in runs(data):
+            yield words, f"words {text}"
 
 
-def _has_pad(instruction: Instruction, length: int) -> bool:
-    """Whether the padding byte in the last word is not 0."""
-    if length % 2 == 0:
-        return False
-    low = instruction.low_byte & Flags.REVERSE_PACKING
-    return bool(int(instruction.data[-1]) & (0xFF00 if low else 0x00FF))
-
-
-def _runs(data: Words) -> Iterator[tuple[Words, str]]:
+def runs(data: Words) -> Iterator[tuple[Words, str]]:
     """Yields words in hexadecimal, eight items a line at most; a repeated word is written as 0010*640."""
-    edges = np.flatnonzero(np.diff(data)) + 1
-    starts = [0, *edges.tolist(), len(data)] if len(data) else [0]
-    texts: list[str] = []
-    begin = 0
-    for first, end in pairwise(starts):
-        word = f"{int(data[first]):04X}"
-        texts += [word] * (end - first) if end - first < 3 else [f"{word}*{end - first}"]
-        if len(texts) >= 8:
-            yield data[begin:end], "words " + " ".join(texts)
-            begin, texts = end, []
-    if texts:
-        yield data[begin:], "words " + " ".join(texts)
+    for begin in range(0, len(data), RUN_WORDS):
+        block = data[begin : begin + RUN_WORDS]
+        edges = [0, *(np.flatnonzero(np.diff(block)) + 1).tolist(), len(block)]
+        texts: list[str] = []
+        start = 0
+        for first, end in pairwise(edges):
+            word = f"{int(block[first]):04X}"
+            texts += [word] * (end - first) if end - first < 3 else [f"{word}*{end - first}"]
+            if len(texts) >= 8 or end == len(block):
+                yield block[start:end], " ".join(texts)
+                start, texts = end, []
+
+
+def _has_pad(instruction: Instruction) -> bool:
+    """Whether the padding byte in the last word is not 0."""
+    pad = 0xFF00 if instruction.low_byte & Flags.REVERSE_PACKING else 0x00FF
+    return (instruction.length or 0) % 2 == 1 and bool(int(instruction.data[-1]) & pad)
 
 
 def _character(code: int) -> str:
@@ -221,9 +225,6 @@ def _character(code: int) -> str:
     return character if 32 <= code < 127 else f"\\x{code:02X}"
 
 
-def _hexadecimal(words: Words) -> str:
-    return " ".join(f"{word:04X}" for word in words.tolist())
-
-
-def _line(place: int, words: str, text: str) -> str:
-    return f"{place:05X}: {words:<{5 * WORDS_PER_LINE}} {text}".rstrip()
+def _line(place: int, words: Words, text: str) -> str:
+    left = " ".join(f"{word:04X}" for word in words.tolist()) if len(words) <= WORDS_PER_LINE else ""
+    return f"{place:05X}: {left:<{5 * WORDS_PER_LINE}} {text}".rstrip()

@@ -1,7 +1,7 @@
 """Instruction: an instruction as a value, and its conversion to the words that a host sends.
 
->>> str(normal("SET", {"foreground": 1}))
-'SET  foreground 1'
+>>> encode(normal("SET", {"foreground": 1})).tolist() == [0x0802, 0x0002, 1]
+True
 """
 
 from __future__ import annotations
@@ -17,8 +17,6 @@ from ramtek_emu.arrays import Words
 from ramtek_emu.checks import is_whole
 from ramtek_emu.errors import InstructionError
 from ramtek_emu.instruction_set.table import (
-    ADDRESSING_NAMES,
-    FLAG_NAMES,
     FORMAT_OF_NAME,
     ILLEGAL,
     OPERAND_BITS,
@@ -35,7 +33,7 @@ MOST_BYTES: Final = 0xFFFF
 """The most bytes of data: their length is sent as a 16-bit word."""
 
 
-@dataclass(frozen=True, eq=False, repr=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class Instruction:
     """An instruction: format, low byte, operands as words, and data."""
 
@@ -51,39 +49,16 @@ class Instruction:
         packed = self.data.astype("<u2" if self.low_byte & Flags.REVERSE_PACKING else ">u2")
         return packed.tobytes()[: self.length]
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Instruction) and np.array_equal(encode(self), encode(other))
-
-    def __hash__(self) -> int:
-        return hash(encode(self).tobytes())
-
-    def __repr__(self) -> str:
-        return f"Instruction({str(self)!r})"
-
-    def __str__(self) -> str:
-        operands = [f"{name} {', '.join(map(str, words))}" for name, words in self.operands.items()]
-        if self.format.is_normal:
-            low = [name for flag, name in FLAG_NAMES.items() if self.low_byte & flag]
-            low += filter(None, [ADDRESSING_NAMES.get(self.low_byte & Flags.ADDRESSING)])
-        else:
-            low = [str(self.low_byte)] if self.low_byte else []
-        length = [] if self.length is None else [f"{self.length} bytes"]
-        return f"{self.format.name:<5}{'; '.join(low + operands + length)}".rstrip()
-
 
 def encode(instruction: Instruction) -> Words:
     """The words of an instruction."""
     format = instruction.format
     if format is ILLEGAL:
-        return np.concatenate((np.array(instruction.operands.get("word", ()), np.uint16), instruction.data))
+        return instruction.data
     head = [format.opcode << 8 | instruction.low_byte]
     if format.is_normal:
         first, second = flag_words_of(instruction.operands)
-        # If a flag is set, its flag word is sent, even if that word names no operand.
-        if instruction.low_byte & Flags.OPERANDS_1:
-            head.append(first)
-        if instruction.low_byte & Flags.OPERANDS_2:
-            head.append(second)
+        head += [word for word in (first, second) if word]
         for operand in operands_named(first, second):
             head.extend(instruction.operands[operand.name])
         if instruction.length is not None:

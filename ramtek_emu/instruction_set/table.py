@@ -8,8 +8,9 @@ cursor or a character, and a fixed sequence of operands follows.
 Every row of both tables cites its sources: keys of docs/SOURCES.md, each with a file.
 
 Hardware: LIN, BTL, JPL and NCAR agree on all of this; the counts of words are Linton's `Argno` and `libdoc`.
-Assumed: CONE is 12 words, as its only client sends; a header comment says 6, which the decoder takes where
-nothing else can be meant.
+Assumed: CONE is 6 words, as `Argno`, `libdoc` and the header say, but 12 in WC, as LIN wc.c sends. Each of
+the 12 is the upper or the lower half of a number; the decoder tells where WC is taken with 6. NCAR ramtek.h
+has another opcode, 8A, for conics with coefficients of 32 bits, so that WC may have 16 bits on the 9400.
 Assumed: DCL is one word, as its neighbors are; no client sends it.
 Assumed: the bits of the second flag word that no source names carry no words.
 """
@@ -17,7 +18,7 @@ Assumed: the bits of the second flag word that no source names carry no words.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Final
 
 
@@ -62,7 +63,7 @@ OPERANDS_1: Final = (
     Operand("spacing", "SPACE", 2, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
     Operand("scale", "SCALE", 1, "LIN libdoc, JPL rtekinc.h"),
     Operand("function", "FUNC", 1, "LIN libdoc, PRG rfun.c"),
-    Operand("conic", "CONE", 12, "LIN wc.c"),
+    Operand("conic", "CONE", 6, "LIN setp.c, LIN libdoc, PRG ramtek.h, LIN wc.c"),
     Operand("base_line", "BASE", 1, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
     Operand("scroll", "SCRO", 1, "LIN libdoc, PRG ramtek.h, NCAR ramtek.h"),
     Operand("start", "STRT", 2, "LIN libdoc, BTL move.c, JPL rtekinc.h, NCAR dev_ramtek.c"),
@@ -95,7 +96,7 @@ def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...
     )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class InstructionFormat:
     """A row of the instruction table."""
 
@@ -105,258 +106,173 @@ class InstructionFormat:
     source: str
     """The sources of the format, such as "LIN lam.c, BTL openpl.c"."""
     fixed: tuple[str, ...] | None = None
-    """The operands of a special instruction, and `length` if data follow; None for a normal instruction."""
-    replies: bool = False
-    """Whether the data go to the host; the instruction then has a length but no data."""
+    """The operands of a special instruction, with `length` last if it has data; None if it is normal."""
     extended: bool = False
     """Whether the instruction exists only on the 9400 and the 9460."""
     unimplemented: bool = False
     """Whether the sources give only the name; then the instruction has no effect here."""
-    requests_operands: bool = False
-    """Whether the flag words name operands that the host asks for; then no operands follow."""
 
-    @property
+    @cached_property
     def is_normal(self) -> bool:
         """Whether the low byte holds flags."""
         return self.fixed is None
 
+    @cached_property
+    def replies(self) -> bool:
+        """Whether the data go to the host; the instruction then has a length but no data."""
+        return self.name in ("RAM", "RI")
+
+    @cached_property
+    def sends_data(self) -> bool:
+        """Whether data follow a length."""
+        return not self.replies and "length" in (self.fixed or ("length",) * self.is_normal)
+
+    @cached_property
+    def requests_operands(self) -> bool:
+        """Whether the flag words name operands that the host asks for; then no operands follow."""
+        return self.name == "READP"
+
+
+def rows_of(table: str) -> tuple[InstructionFormat, ...]:
+    """The formats of a text with a row a line: opcode, name and operands | meaning | source.
+
+    A plus sign after the opcode means the 9400 and the 9460 alone. Without a word after the name the
+    instruction is normal, and `none` means a special instruction without operands.
+    """
+    rows = []
+    for line in table.strip().replace("\n    ", " ").splitlines():
+        head, meaning, source = line.split(" | ")
+        opcode, name, *operands = head.split()
+        fixed = tuple(operand for operand in operands if operand != "none") if operands else None
+        rows.append(
+            InstructionFormat(int(opcode[:2], 16), name, meaning, source, fixed, opcode.endswith("+"))
+        )
+    return tuple(rows)
+
 
 ILLEGAL: Final = InstructionFormat(-1, "???", "no instruction", "", ())
-"""The format of a word that begins no instruction of the table; only that word is skipped."""
+"""The format of a row of words that begin no instruction of the table; these words are skipped."""
 
-CHARACTER_ROWS: Final = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
-"""The operands of LPF: twelve rows of eight dots, two a word."""
-
-NAME_ALONE: Final = "NCAR ramtek.h, format assumed"
-"""The source of a row of which only number and name are known."""
-
-SUBSTANTIATED: Final = (
-    InstructionFormat(
-        0x03,
-        "LAM",
-        "load the lookup table",
-        "LIN lam.c, PRG cmap.c, BTL openpl.c, JPL ramtek_lut.c, NCAR dev_ramtek.c",
-        ("address", "length"),
-    ),
-    # Assumed: on the 9300 too, though only clients of the 9460 were seen to send it; without it, a client
-    # that reads the table of a 9300 would wait for its answer forever.
-    InstructionFormat(
-        0x04, "RAM", "read the lookup table", "JPL ramtek_lut.c", ("address", "length"), replies=True
-    ),
-    InstructionFormat(
-        0x05,
-        "RSET",
-        "restore every parameter and erase the screen",
-        "LIN libdoc, PRG ramtek.h, BTL erase.c",
-        (),
-    ),
-    InstructionFormat(0x06, "INIT", "restore every parameter", "LIN libdoc, PRG ramtek.h", ()),
-    InstructionFormat(0x07, "NOP", "do nothing", "PRG ramtek.h, NCAR ramtek.h", ()),
-    InstructionFormat(
-        0x08, "SET", "set parameters", "LIN libdoc, BTL move.c, JPL rtekinc.h, NCAR dev_ramtek.c"
-    ),
-    InstructionFormat(
-        0x09, "ERS", "erase the window", "LIN libdoc, BTL sbox.c, JPL rtekinc.h, NCAR dev_ramtek.c"
-    ),
-    InstructionFormat(
-        0x0A, "WI", "write an image", "LIN libdoc, PIC pmunge0.c, JPL rtekinc.h, NCAR dev_ramtek.c"
-    ),
-    InstructionFormat(0x0B, "RI", "read an image", "LIN libdoc, PIC pram.c, JPL rtekinc.h", replies=True),
-    InstructionFormat(0x0C, "WT", "write text", "LIN wt.c, PRG rrr.c, BTL text.c, JPL rtekinc.h"),
-    InstructionFormat(0x0D, "WR", "write a raster of one bit a pixel", "LIN wr.c, PRG rast.c"),
-    InstructionFormat(
-        0x0E, "WVL", "write linked vectors", "PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c"
-    ),
-    InstructionFormat(0x0F, "WC", "write a conic", "LIN wc.c, LIN libdoc"),
-    InstructionFormat(0x13, "PUSHE", "save the environment", NAME_ALONE, (), extended=True),
-    InstructionFormat(0x14, "POPE", "restore the environment", NAME_ALONE, (), extended=True),
-    InstructionFormat(0x15, "LPF", "load a character", "LIN lcs.c", CHARACTER_ROWS),
-    InstructionFormat(
-        0x16, "WCSS", "write a cursor, screen coordinates", "LIN wcur.c", ("element", "line_and_state")
-    ),
-    InstructionFormat(0x17, "RCSS", "read a cursor, screen coordinates", "LIN rcur.c", ()),
-    InstructionFormat(
-        0x21, "LPFRP", "load a character, reverse packed", NAME_ALONE, CHARACTER_ROWS, extended=True
-    ),
-    InstructionFormat(0x24, "READP", "read parameters", NAME_ALONE, extended=True, requests_operands=True),
-    InstructionFormat(0x25, "RERR", "read and clear the error status", NAME_ALONE, (), extended=True),
-    InstructionFormat(
-        0x26,
-        "ZOOM",
-        "repeat elements and lines",
-        "JPL rtekinc.h, NCAR dev_ramtek.c",
-        ("zoom",),
-        extended=True,
-    ),
-    InstructionFormat(0x27, "SELVO", "select the video origin", "NCAR dev_ramtek.c", (), extended=True),
-    InstructionFormat(
-        0x29, "WAITVR", "wait for the vertical retrace", "NCAR dev_ramtek.c", (), extended=True
-    ),
-    InstructionFormat(0x2A, "WAITL", "wait for a line", NAME_ALONE, ("line",), extended=True),
-    InstructionFormat(0x2B, "BERS", "erase the whole memory", NAME_ALONE, extended=True),
-    InstructionFormat(
-        0x2C,
-        "WCSP",
-        "write a cursor, pixel coordinates",
-        "NCAR dev_ramtek.c",
-        ("element", "line_and_state"),
-        extended=True,
-    ),
-    InstructionFormat(
-        0x2D,
-        "WCSG",
-        "write a cursor, global coordinates",
-        "JPL ramtek_curposition.c",
-        ("element", "line", "state"),
-        extended=True,
-    ),
-    InstructionFormat(
-        0x2E, "RCSP", "read a cursor, pixel coordinates", "NCAR dev_ramtek.c", (), extended=True
-    ),
-    InstructionFormat(
-        0x2F, "RCSG", "read a cursor, global coordinates", "JPL ramtek_curposition.c", (), extended=True
-    ),
-    InstructionFormat(0x30, "LCF", "load a cursor's shape", "JPL rtekinc.h", ("length",), extended=True),
-    InstructionFormat(
-        0x33,
-        "DDCC",
-        "connect a tracking device to cursors",
-        "JPL ramtek_autotrack.c",
-        ("cursors",),
-        extended=True,
-    ),
-    InstructionFormat(0x35, "WVU", "write unlinked vectors", NAME_ALONE, extended=True),
-    InstructionFormat(0x38, "WPT", "write points", "NCAR dev_ramtek.c", extended=True),
-    InstructionFormat(0x39, "WRP", "write random pixels", NAME_ALONE, extended=True),
-    InstructionFormat(0x3A, "FILL", "fill an area", "NCAR dev_ramtek.c", extended=True),
-    InstructionFormat(0x4E, "ATTPF", "attach a font", "NCAR dev_ramtek.c", (), extended=True),
-    InstructionFormat(0x69, "COPY", "copy an image", NAME_ALONE, extended=True),
-    InstructionFormat(0x6D, "CIRC", "write circles", "JPL rtekinc.h, NCAR dev_ramtek.c", extended=True),
-)
+SUBSTANTIATED: Final = rows_of("""
+03 LAM address length | load the lookup table | LIN lam.c, PRG cmap.c, BTL openpl.c, JPL ramtek_lut.c,
+    NCAR dev_ramtek.c
+04 RAM address length | read the lookup table | JPL ramtek_lut.c
+05 RSET none | restore every parameter and erase the screen | LIN libdoc, PRG ramtek.h, BTL erase.c
+06 INIT none | restore every parameter | LIN libdoc, PRG ramtek.h
+07 NOP none | do nothing | PRG ramtek.h, NCAR ramtek.h
+08 SET | set parameters | LIN setp.c, LIN libdoc, BTL move.c, JPL rtekinc.h, NCAR dev_ramtek.c
+09 ERS | erase the window | LIN clear.c, LIN libdoc, BTL sbox.c, JPL rtekinc.h, NCAR dev_ramtek.c
+0A WI | write an image | LIN wi.c, PIC pmunge0.c, JPL rtekinc.h, NCAR dev_ramtek.c
+0B RI | read an image | LIN ri.c, LIN lread.c, PRG rread.c, JPL rtekinc.h
+0C WT | write text | LIN wt.c, PRG rrr.c, BTL text.c, JPL rtekinc.h
+0D WR | write a raster of one bit a pixel | LIN wr.c, PRG rast.c
+0E WVL | write linked vectors | LIN wv.c, LIN wvs.c, PRG rrr.c, BTL vec.c, JPL rtekinc.h, NCAR dev_ramtek.c
+0F WC | write a conic | LIN wc.c, LIN libdoc
+10 WPB | write a plot | LIN libdoc, LIN fplot.c, NCAR ramtek.h, format assumed
+13+ PUSHE none | save the environment | NCAR ramtek.h, format assumed
+14+ POPE none | restore the environment | NCAR ramtek.h, format assumed
+15 LPF rows_0_1 rows_2_3 rows_4_5 rows_6_7 rows_8_9 rows_10_11 | load a character | LIN lcs.c
+16 WCSS element line_and_state | write a cursor, screen coordinates | LIN wcur.c
+17 RCSS none | read a cursor, screen coordinates | LIN rcur.c
+21+ LPFRP rows_0_1 rows_2_3 rows_4_5 rows_6_7 rows_8_9 rows_10_11 | load a character, reverse packed
+    | NCAR ramtek.h, format assumed
+24+ READP | read parameters | NCAR ramtek.h, format assumed
+25+ RERR none | read and clear the error status | NCAR ramtek.h, format assumed
+26+ ZOOM zoom | repeat elements and lines | JPL rtekinc.h, NCAR dev_ramtek.c
+27+ SELVO none | select the video origin | NCAR dev_ramtek.c
+29+ WAITVR none | wait for the vertical retrace | NCAR dev_ramtek.c
+2A+ WAITL line | wait for a line | NCAR ramtek.h, format assumed
+2B+ BERS | erase the whole memory | NCAR ramtek.h, format assumed
+2C+ WCSP element line_and_state | write a cursor, pixel coordinates | NCAR dev_ramtek.c
+2D+ WCSG element line state | write a cursor, global coordinates | JPL ramtek_curposition.c
+2E+ RCSP none | read a cursor, pixel coordinates | NCAR dev_ramtek.c
+2F+ RCSG none | read a cursor, global coordinates | JPL ramtek_curposition.c
+30+ LCF length | load a cursor's shape | JPL rtekinc.h
+33+ DDCC cursors | connect a tracking device to cursors | JPL ramtek_autotrack.c
+35+ WVU | write unlinked vectors | NCAR ramtek.h, format assumed
+38+ WPT | write points | NCAR dev_ramtek.c
+39+ WRP | write random pixels | NCAR ramtek.h, format assumed
+3A+ FILL | fill an area | NCAR dev_ramtek.c
+4E+ ATTPF none | attach a font | NCAR dev_ramtek.c
+69+ COPY | copy an image | NCAR ramtek.h, format assumed
+6D+ CIRC | write circles | JPL rtekinc.h, NCAR dev_ramtek.c
+""")
 """The instructions that programs of the time confirm, or whose names leave little doubt.
 
 Hardware: LIN, PRG, BTL and PIC send or describe the rows that are not extended, except RAM. JPL and NCAR send
 the extended rows; FILL and WPT are in disabled code.
+Assumed: RAM belongs to the 9300, too, though only clients of the 9460 were seen to send it; without it, a
+client that reads the table of a 9300 would wait for its answer forever.
 Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the
 sources give numbers and names. Their executors say more.
 """
 
-UNIMPLEMENTED: Final = (
-    (0x01, "LOAD", "load a hard register"),
-    (0x02, "READ", "read a soft register"),
-    (0x10, "WPB", "write a plot box"),
-    (0x11, "SCRX", "scroll along the lines"),
-    (0x12, "SCRY", "scroll across the lines"),
-    (0x18, "WKB", "write to the keyboard"),
-    (0x19, "RKB", "read the keyboard"),
-    (0x1A, "SPS", "sense the status of peripherals"),
-    (0x1B, "LDL", "load a display list"),
-    (0x1C, "RDL", "read a display list"),
-    (0x1D, "CCM", "call control memory"),
-    (0x1E, "XIM", "execute instruction memory"),
-    (0x1F, "LDLRP", "load a display list, reverse packed"),
-    (0x20, "RDLRP", "read a display list, reverse packed"),
-    (0x22, "SELMG", "select an MCP or a group"),
-    (0x23, "SETDC", "set the ranges of display classes"),
-    (0x28, "LOADSO", "load the origins of subchannels"),
-    (0x31, "LCCIO", "load a cursor into the operating point, an index register or the origin"),
-    (0x32, "CWC", "center the window at a cursor"),
-    (0x34, "DCVC", "define the configuration of cursors and video"),
-    (0x36, "WPP", "write a plot point"),
-    (0x37, "WPV", "write a plot vector"),
-    (0x3B, "ALDL", "allocate a display list"),
-    (0x3C, "DEDL", "delete a display list"),
-    (0x3D, "RESCON", "reset a context"),
-    (0x3E, "WBLK", "write a block to the keyboard"),
-    (0x3F, "WBLKRP", "write a block to the keyboard, reverse packed"),
-    (0x40, "RTC", "read the coordinates of the tablet"),
-    (0x41, "CDL", "call a display list"),
-    (0x42, "RETDL", "return from a display list"),
-    (0x43, "SDLR", "set a display-list register"),
-    (0x44, "DDLR", "decrement a display-list register"),
-    (0x45, "IDLR", "increment a display-list register"),
-    (0x46, "SUBDLR", "subtract display-list registers"),
-    (0x47, "ADLR", "add display-list registers"),
-    (0x48, "LDLR", "load a display-list register"),
-    (0x49, "STDLR", "store a display-list register"),
-    (0x4A, "PLDLR", "load display-list registers from parameters"),
-    (0x4B, "JDLR", "jump if a display-list register fulfills a condition"),
-    (0x4C, "ALPF", "allocate a font"),
-    (0x4D, "DEPF", "delete a font"),
-    (0x4F, "LMPF", "load several fonts"),
-    (0x50, "PUSHM", "push the matrix"),
-    (0x51, "POPM", "pop the matrix"),
-    (0x52, "SETM", "set the matrix"),
-    (0x53, "LM", "load the current matrix"),
-    (0x54, "SM", "store the current matrix"),
-    (0x55, "MM", "multiply matrices"),
-    (0x56, "MMI", "multiply by an immediate matrix"),
-    (0x57, "IM", "initialize the matrix"),
-    (0x58, "SCALE", "scale the matrix"),
-    (0x59, "TRANS", "translate the matrix"),
-    (0x5A, "ROTAT", "rotate the matrix"),
-    (0x5B, "READM", "read the matrix"),
-    (0x5C, "ALCON", "allocate a context"),
-    (0x5D, "DECON", "delete a context"),
-    (0x5E, "SCON", "select a context"),
-    (0x5F, "READAS", "read the state of allocation"),
-    (0x60, "RCON", "read the associations of contexts"),
-    (0x61, "SDP", "set the parameters of detection"),
-    (0x62, "ED", "enable detection"),
-    (0x63, "DD", "disable detection"),
-    (0x64, "SD", "suspend detection"),
-    (0x65, "RD", "resume detection"),
-    (0x66, "SDD", "set the data of detection"),
-    (0x67, "SDS", "SDS"),
-    (0x68, "RDB", "read the buffer of detection"),
-    (0x6A, "COPYT", "copy an image, triggered"),
-    (0x6B, "COMBI", "combine images"),
-    (0x6C, "COMBT", "combine images, triggered"),
-    (0x6E, "ARC1", "write arcs, type 1"),
-    (0x6F, "ARC2", "write arcs, type 2"),
-    (0x70, "ARC3", "write arcs, type 3"),
-    (0x71, "SLFS", "set the state of local functions"),
-    (0x72, "SLKF", "set a local keyboard function"),
-    (0x73, "CLKF", "clear a local keyboard function"),
-    (0x74, "SLCF", "set a local cursor function"),
-    (0x75, "CLCF", "clear a local cursor function"),
-    (0x76, "SKES", "set the echo of the keyboard"),
-    (0x77, "CKES", "clear the echo of the keyboard"),
-    (0x7F, "WPI", "write a packed image"),
-    (0x80, "WIV", "write image vectors"),
-    (0x81, "SCW", "set the window of a cursor"),
-    (0x82, "WRCT", "write colored text at random places"),
-    (0x83, "RCSL", "read a cursor, local"),
-    (0x84, "WCSL", "write a cursor, local"),
-    (0x85, "DIVDLR", "divide display-list registers"),
-    (0x86, "MULDLR", "multiply display-list registers"),
-    (0x87, "ANDDLR", "AND of display-list registers"),
-    (0x88, "ORDLR", "OR of display-list registers"),
-    (0x89, "XORDLR", "exclusive OR of display-list registers"),
-    (0x8A, "WC32", "write a conic with 32-bit coefficients"),
-    (0x8B, "STM", "set the mode of the tablet"),
-    (0x8C, "RTCS", "read the coordinates and the status of the tablet"),
-    (0x8D, "WCVU", "write colored, unlinked vectors"),
-)
-"""Opcodes of the 9400 and 9460 of which only number and name are known: opcode, name, meaning.
+NAMES: Final = """
+01+ LOAD load a hard register; 02+ READ read a soft register;
+11 SCRX scroll along the lines; 12 SCRY scroll across the lines; 18+ WKB write to the keyboard;
+19+ RKB read the keyboard; 1A+ SPS sense the status of peripherals; 1B+ LDL load a display list;
+1C+ RDL read a display list; 1D+ CCM call control memory; 1E+ XIM execute instruction memory;
+1F+ LDLRP load a display list, reverse packed; 20+ RDLRP read a display list, reverse packed;
+22+ SELMG select an MCP or a group; 23+ SETDC set the ranges of display classes;
+28+ LOADSO load the origins of subchannels;
+31+ LCCIO load a cursor into the operating point, an index register or the origin;
+32+ CWC center the window at a cursor; 34+ DCVC define the configuration of cursors and video;
+36+ WPP write a plot point; 37+ WPV write a plot vector; 3B+ ALDL allocate a display list;
+3C+ DEDL delete a display list; 3D+ RESCON reset a context; 3E+ WBLK write a block to the keyboard;
+3F+ WBLKRP write a block to the keyboard, reverse packed; 40+ RTC read the coordinates of the tablet;
+41+ CDL call a display list; 42+ RETDL return from a display list; 43+ SDLR set a display-list register;
+44+ DDLR decrement a display-list register; 45+ IDLR increment a display-list register;
+46+ SUBDLR subtract display-list registers; 47+ ADLR add display-list registers;
+48+ LDLR load a display-list register; 49+ STDLR store a display-list register;
+4A+ PLDLR load display-list registers from parameters;
+4B+ JDLR jump if a display-list register fulfills a condition; 4C+ ALPF allocate a font;
+4D+ DEPF delete a font; 4F+ LMPF load several fonts; 50+ PUSHM push the matrix; 51+ POPM pop the matrix;
+52+ SETM set the matrix; 53+ LM load the current matrix; 54+ SM store the current matrix;
+55+ MM multiply matrices; 56+ MMI multiply by an immediate matrix; 57+ IM initialize the matrix;
+58+ SCALE scale the matrix; 59+ TRANS translate the matrix; 5A+ ROTAT rotate the matrix;
+5B+ READM read the matrix; 5C+ ALCON allocate a context; 5D+ DECON delete a context;
+5E+ SCON select a context; 5F+ READAS read the state of allocation;
+60+ RCON read the associations of contexts; 61+ SDP set the parameters of detection; 62+ ED enable detection;
+63+ DD disable detection; 64+ SD suspend detection; 65+ RD resume detection;
+66+ SDD set the data of detection; 67+ SDS SDS; 68+ RDB read the buffer of detection;
+6A+ COPYT copy an image, triggered; 6B+ COMBI combine images; 6C+ COMBT combine images, triggered;
+6E+ ARC1 write arcs, type 1; 6F+ ARC2 write arcs, type 2; 70+ ARC3 write arcs, type 3;
+71+ SLFS set the state of local functions; 72+ SLKF set a local keyboard function;
+73+ CLKF clear a local keyboard function; 74+ SLCF set a local cursor function;
+75+ CLCF clear a local cursor function; 76+ SKES set the echo of the keyboard;
+77+ CKES clear the echo of the keyboard; 7F+ WPI write a packed image; 80+ WIV write image vectors;
+81+ SCW set the window of a cursor; 82+ WRCT write colored text at random places;
+83+ RCSL read a cursor, local; 84+ WCSL write a cursor, local; 85+ DIVDLR divide display-list registers;
+86+ MULDLR multiply display-list registers; 87+ ANDDLR AND of display-list registers;
+88+ ORDLR OR of display-list registers; 89+ XORDLR exclusive OR of display-list registers;
+8A+ WC32 write a conic with 32-bit coefficients; 8B+ STM set the mode of the tablet;
+8C+ RTCS read the coordinates and the status of the tablet; 8D+ WCVU write colored, unlinked vectors
+"""
+"""Opcodes of which only number, name and meaning are known, as in the rows above.
 
 Hardware: NCAR ramtek.h lists them with a few words each, and no client sends them. SDS has a joke there.
+LIN libdoc has a scrolling count, so that SCRX and SCRY belong to the 9300, too.
 """
 
-FORMATS: Final = SUBSTANTIATED + tuple(
-    InstructionFormat(opcode, name, meaning, "NCAR ramtek.h", extended=True, unimplemented=True)
-    for opcode, name, meaning in UNIMPLEMENTED
+UNIMPLEMENTED: Final = tuple(
+    InstructionFormat(int(opcode[:2], 16), name, meaning, "NCAR ramtek.h", None, opcode.endswith("+"), True)
+    for opcode, name, meaning in (entry.split(maxsplit=2) for entry in NAMES.strip().split(";"))
 )
+
+FORMATS: Final = SUBSTANTIATED + UNIMPLEMENTED
 """All rows of the instruction table.
 
 Assumed: an instruction known by its name only has the normal format. The decoder consumes the flag words,
 operands and data that its low byte announces, and so finds the next instruction. The operands are set, since
 they are sticky. The only other effect is the illegal-instruction status.
 """
-FLAG_NAMES: Final = {
-    Flags.REVERSE_PACKING: "RP",
-    Flags.SWAP: "BK",
-    Flags.ADDITIVE: "AD",
+FLAG_OF_NAME: Final = {
+    "RP": Flags.REVERSE_PACKING,
+    "BK": Flags.SWAP,
+    "AD": Flags.ADDITIVE,
+    "IX01": Flags.INDEX_1,
+    "IX10": Flags.INDEX_2,
+    "IX11": Flags.RELATIVE,
 }
-ADDRESSING_NAMES: Final = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
+"""The flags by their names in the sources, but those for operands and data."""
 FORMAT_OF_NAME: Final = {format.name: format for format in FORMATS}

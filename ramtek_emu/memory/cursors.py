@@ -87,9 +87,6 @@ class Cursors:
         visible = sum(cursor.is_visible for cursor in self.all)
         return f"Cursors({len(self.all)}, {visible} visible, TRACK {'on' if self.track else 'off'})"
 
-    def __len__(self) -> int:
-        return len(self.all)
-
     def __getitem__(self, number: int) -> Cursor:
         return self.all[number]
 
@@ -118,16 +115,12 @@ class Cursors:
         cursor = self.all[number]
         cursor.element, cursor.line, cursor.state = element, line, state
 
-    def state_of(self, number: int) -> int:
-        """The state bits of a cursor, with the switches."""
-        cursor = self.all[number]
-        return cursor.state & ~(TRACK | ENTER) | (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
-
     def read_state(self, number: int) -> int:
-        """The state bits as the host reads them; reading clears the ENTER of this cursor."""
-        state = self.state_of(number)
-        self.all[number].enter = False
-        return state
+        """The state bits of a cursor, with the switches, as the host reads them; its ENTER is cleared."""
+        cursor = self.all[number]
+        switches = (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
+        cursor.enter = False
+        return cursor.state & ~(TRACK | ENTER) | switches
 
     def set_shape(self, number: int, rows: Bytes) -> None:
         """Replace up to 32 rows of a cursor's shape; a row is four bytes, the highest bit leftmost."""

@@ -11,16 +11,12 @@ Assumed: the entries are black at power-on; no source says what a cold table sho
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from ramtek_emu.arrays import Bytes, Colors, PackedColors, Words
-from ramtek_emu.checks import checked_colors
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
-
-VIEWS: Final = ("_halves", "_unused", "packed")
-"""Attributes that are views of the packed entries; a copy makes its own views."""
 
 
 class LookupTable:
@@ -38,9 +34,6 @@ class LookupTable:
         self._last_range = 0, 0, 0
         """The last range written: the count `written` before it, its first entry, and the entry after it."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
-        self._make_views()
-
-    def _make_views(self) -> None:
         # In this byte order, the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
         self._unused: Bytes = self._packed.view(np.uint8)[3::4]
@@ -49,20 +42,13 @@ class LookupTable:
         """The entries as 0x00RRGGBB, (entries,) uint32; a read-only view that stays current."""
         self.packed.flags.writeable = False
 
-    def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in vars(self).items() if name not in VIEWS}
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        vars(self).update(state)
-        self._make_views()
-
     def __repr__(self) -> str:
         format = self.entry_format.name
         return f"LookupTable({self.size} entries, {format}, {self.written} words written)"
 
     def state(self) -> dict[str, Any]:
-        """The entries as 0x00RRGGBB, and the address counter; the array is this memory itself."""
-        return {"entries": self.packed, "table_address": self.address}
+        """The entries as 0x00RRGGBB, (entries,) uint32, and the address counter."""
+        return {"entries": self._packed.copy(), "table_address": self.address}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Write the entries of a state, and set the address counter, which wraps."""
@@ -89,13 +75,6 @@ class LookupTable:
         """
         since, first, end = self._last_range
         return (first, end) if written >= since else None
-
-    def write(self, first: int, colors: object) -> None:
-        """Write (n, 3) colors from Python; ColorsError if a color or the range does not fit."""
-        checked = checked_colors(first, colors, self.size)
-        first, end = int(first), int(first) + len(checked)
-        self._packed.view(np.uint8).reshape(-1, 4)[first:end, 2::-1] = checked
-        self._note(first, end, len(checked))
 
     def load(self, address: int, words: Words) -> None:
         """Write words of the host from a word address on; the address counter advances and wraps."""

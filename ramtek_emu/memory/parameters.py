@@ -8,7 +8,7 @@ one), the background 0, the mask all ones, the window the whole memory, the scan
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 from ramtek_emu.configuration import Configuration
@@ -35,7 +35,7 @@ def register(point: Point) -> Point:
 def coefficients(words: tuple[int, ...]) -> tuple[int, ...]:
     """The six numbers of a conic: from six words of 16 bits, or from twelve, high word first.
 
-    Hardware: LIN wc.c sends pairs whose high word is always 0.
+    Hardware: LIN setp.c sends six words, and wc.c pairs whose high word is always 0.
     Assumed: a pair whose high word is 0 is therefore the 16-bit number in its low word, which may be
     negative; any other pair is a number of 32 bits.
     """
@@ -79,8 +79,8 @@ class Parameters:
     """Whether lines are counted from the bottom of the screen."""
     font: int = 0
     """The font of text: STANDARD_FONT is the ROM, any other number the loaded characters."""
-    whole_window: Window = field(repr=False)
-    whole_word: int = field(repr=False)
+    whole_window: Window
+    whole_word: int
     """A word with every plane set."""
 
     @classmethod
@@ -108,8 +108,6 @@ class Parameters:
     def operand(self, name: str) -> tuple[int, ...]:
         """The words of an operand."""
         value = getattr(self, name)
-        if name == "conic":
-            value = tuple(half for number in value for half in (number >> 16, number))
         return tuple(number & 0xFFFF for number in (value if isinstance(value, tuple) else (value,)))
 
     @property
@@ -154,16 +152,14 @@ class Parameters:
         for name, words in operands.items():
             if name in ("window", "start"):
                 continue
-            if name in ("index_1", "index_2", "origin", "write_offset"):
-                setattr(self, name, Point(signed(words[0]), signed(words[1])))
-            elif name == "write_window":
-                self.write_window = Window(*map(signed, words))
+            if len(words) == 1:
+                setattr(self, name, words[0])
             elif name == "conic":
                 self.conic = coefficients(words)
-            elif len(words) == 1:
-                setattr(self, name, words[0])
-            else:
+            elif (kind := type(getattr(self, name))) is tuple:
                 setattr(self, name, words)
+            else:
+                setattr(self, name, kind(*map(signed, words)))
         if "window" in operands:
             left, top, right, bottom = operands["window"]
             element, line = base

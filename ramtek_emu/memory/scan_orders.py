@@ -24,9 +24,11 @@ point is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
-from ramtek_emu.arrays import Raster, Scalar
+import numpy as np
+
+from ramtek_emu.arrays import Numbers, Raster, Scalar
 
 
 class Point(NamedTuple):
@@ -72,10 +74,6 @@ class Window(NamedTuple):
             min(self.bottom, other.bottom),
         )
 
-    def moved(self, elements: int, lines: int) -> Window:
-        """The window moved to the right and down."""
-        return Window(self.left + elements, self.top + lines, self.right + elements, self.bottom + lines)
-
 
 class ScanOrder(NamedTuple):
     """The directions of one of the eight codes."""
@@ -110,8 +108,8 @@ class ScanOrder(NamedTuple):
         down = window.bottom - point.line if self.upward else point.line - window.top
         return (down, across) if self.vertical else (across, down)
 
-    def stepped(self, corner: Point, inner: int, outer: int) -> Point:
-        """The point at these steps from the corner: the inverse of `steps`."""
+    def stepped(self, corner: Point, inner: Any, outer: Any) -> Point:
+        """The point at these steps from the corner, or the places: the inverse of `steps`."""
         across, down = (outer, inner) if self.vertical else (inner, outer)
         return Point(
             corner.element + (-across if self.leftward else across),
@@ -126,27 +124,27 @@ class ScanOrder(NamedTuple):
             inner, outer = 0, outer + 1
         return inner, 0 if outer >= runs else outer
 
-    def words_before(self, window: Window, start: Point) -> int:
-        """The number of words from `start` on that may lie before the window; the words after them do not."""
-        inner, outer = self.entry(window, start)
-        if inner >= 0 and outer >= 0:
-            return 0
-        along = self.inner_and_outer(window)[0]
-        return along * max(1, -outer) - inner
-
     def after(self, window: Window, start: Point, count: int) -> Point:
         """The point after `count` words from `start` on."""
         if not count:
             return start
         inner, outer = self.entry(window, start)
         along, runs = self.inner_and_outer(window)
-        first = along - inner
-        if count < first:
-            inner += count
-        else:
-            more, inner = divmod(count - first, along)
-            outer += 1 + more
+        more, rest = divmod(count - (along - inner), along)
+        inner, outer = (inner + count, outer) if more < 0 else (rest, outer + 1 + more)
         return self.stepped(self.corner(window), inner, outer % runs if outer >= 0 else outer)
+
+    def places(self, window: Window, start: Point, count: int) -> tuple[Numbers, Numbers]:
+        """The elements and the lines of `count` words from `start` on."""
+        inner, outer = self.entry(window, start)
+        along, runs = self.inner_and_outer(window)
+        more, inners = np.divmod(np.arange(count) - (along - inner), along)
+        in_first = more < 0
+        inners[in_first] = inner + np.flatnonzero(in_first)
+        outers = outer + np.where(in_first, 0, 1 + more)
+        outers = np.where(outers < 0, outers, outers % runs)
+        places: tuple[Any, Any] = self.stepped(self.corner(window), inners, outers)
+        return places
 
     def block_window(self, start: Point, inner: int, outer: int) -> Window:
         """The window of a block of inner x outer words with its first word at `start`."""

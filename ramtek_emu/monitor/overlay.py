@@ -22,6 +22,7 @@ PAGES: Final = {"f1": "help", "f4": "entries"}
 
 KEYS: Final = (
     ("F1", "this help, and back"),
+    ("F2", "show all words in gray, in another gray, as the display does"),
     ("F3", "record the fields as a film; again: end it"),
     ("F4", "the entries of the lookup table, and back"),
     ("F10", "fill the window, or show whole multiples"),

@@ -15,15 +15,9 @@ from ramtek_emu.arrays import Colors, Indices, Words
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 BARS: Final = (
-    (255, 255, 255),
-    (255, 255, 0),
-    (0, 255, 255),
-    (0, 255, 0),
-    (255, 0, 255),
-    (255, 0, 0),
-    (0, 0, 255),
-    (0, 0, 0),
-)
+    (255, 255, 255), (255, 255, 0), (0, 255, 255), (0, 255, 0),
+    (255, 0, 255), (255, 0, 0), (0, 0, 255), (0, 0, 0),
+)  # fmt: skip
 FIRST_BAR: Final = 1
 """The word of the first bar; the words of the other bars follow."""
 GROUND: Final = 9
@@ -32,6 +26,12 @@ LABEL: Final = 11
 """The word of letters, circles and the border."""
 SHADE: Final = 12
 """The word behind the letters."""
+
+
+FULL: Final = {
+    "gray": (1, 1, 1), "red": (1, 0, 0), "green": (0, 1, 0), "blue": (0, 0, 1), "hue": (0, 4, 2),
+}  # fmt: skip
+"""The components of the brightest color of a ramp; of the hues, where they begin, in sixths of the circle."""
 
 
 def pattern(configuration: Configuration = GMR_9300) -> Words:
@@ -62,23 +62,18 @@ def colors(configuration: Configuration) -> Colors:
     table[FIRST_BAR : FIRST_BAR + len(BARS)] = BARS
     table[[GROUND, GRID, LABEL, SHADE]] = (26, 30, 38), (66, 76, 92), (255, 255, 255), (12, 14, 18)
     for name, words in ramp_words(configuration).items():
-        height = np.linspace(0, 255, len(words)).round().astype(np.uint8)
+        turn = np.arange(len(words)) / len(words) * 6
+        height = np.linspace(0, 1, len(words))[:, np.newaxis] * FULL[name]
         if name == "hue":
-            turn = np.arange(len(words)) / len(words) * 6
-            for column, shift in enumerate((0, 4, 2)):
-                wave = np.abs((turn + shift) % 6 - 3) - 1
-                table[words, column] = (np.clip(wave, 0, 1) * 255).round().astype(np.uint8)
-        else:
-            shown = {"gray": [0, 1, 2], "red": [0], "green": [1], "blue": [2]}[name]
-            table[np.ix_(words, np.array(shown))] = height[:, np.newaxis]
+            height = np.clip(np.abs((turn[:, np.newaxis] + FULL[name]) % 6 - 3) - 1, 0, 1)
+        table[words] = (height * 255).round()
     return table
 
 
 def load(configuration: Configuration) -> Words:
     """The instructions that load the entries, in the configuration's format."""
     short = configuration.entry_format is EntryFormat.WORD_12
-    encoder = instructions.load_short_entries if short else instructions.load_entries
-    loaded = encoder(0, colors(configuration), configuration.entries)
+    loaded = instructions.load_entries(0, colors(configuration), configuration.entries, short)
     return instructions.concatenate(loaded, instructions.park_table())
 
 
@@ -128,23 +123,17 @@ def circle_outline(configuration: Configuration) -> Words:
     circles += [
         (e, n, small) for e in (small + 8, width - small - 9) for n in (small + 8, height - small - 9)
     ]
-    return instructions.concatenate(
-        *(
-            instructions.write_vectors(np.floor(unit * size + (element, line) + 0.5).astype(np.int64), LABEL)
-            for element, line, size in circles
-        )
-    )
+    vertices = (np.floor(unit * size + (element, line) + 0.5) for element, line, size in circles)
+    outlines = (instructions.write_vectors(each.astype(np.int64), LABEL) for each in vertices)
+    return instructions.concatenate(*outlines)
 
 
 def labels(configuration: Configuration) -> Words:
     """The instructions that write the name of the configuration, its sizes and the characters."""
     center, middle_line, radius = disc(configuration)
-    height = configuration.shown_lines
-    sizes = (
-        f" {configuration.shown_elements} x {configuration.shown_lines} x {configuration.planes} "
-        f"  {configuration.entries} ENTRIES "
-    )
+    width, height = configuration.shown_elements, configuration.shown_lines
     title = f" {configuration.name.replace('_', ' ')} "
+    sizes = f" {width} x {height} x {configuration.planes}   {configuration.entries} ENTRIES "
     rows = [(title, middle_line - radius * 9 // 12, 2), (sizes, middle_line - radius * 9 // 12 + 22, 1)]
     characters = "".join(map(chr, range(32, 127)))
     rows += [(characters[:48], height - 27, 1), (characters[48:], height - 16, 1)]

@@ -18,8 +18,10 @@ the window saves the film, too.
 from __future__ import annotations
 
 import os
+import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -33,6 +35,7 @@ from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Release
 from ramtek_emu.monitor.input_queue import Key as Key
 from ramtek_emu.monitor.input_queue import Pointer as Pointer
 from ramtek_emu.monitor.overlay import PAGES, Overlay
+from ramtek_emu.video.scan_out import next_table
 
 if TYPE_CHECKING:
     from ramtek_emu.films import TimedFilm
@@ -98,8 +101,8 @@ class Monitor:
         self._enter = False
         self._film: TimedFilm | None = None
         """The film that is recorded, or that could not be saved."""
-        self._drops_film = False
-        """Whether the user knows that closing the window drops the film."""
+        self._closes_film = False
+        """Whether the user knows that closing the window saves the film elsewhere."""
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
@@ -117,6 +120,7 @@ class Monitor:
     @display.setter
     def display(self, display: Ramtek9300) -> None:
         display.joystick.move_to(*self._display.joystick.position)
+        display.scan_out.shown_table = self._display.scan_out.shown_table
         self._display = display
         self._glass.forget_shown()
 
@@ -161,14 +165,22 @@ class Monitor:
         self._set_title()
 
     def close(self) -> None:
-        """Close the window without asking. A film is saved, and a message on stderr has its path."""
+        """Close the window without asking. A film is saved, and a message on stderr has its path.
+
+        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files, or
+        else to the home folder.
+        """
         self._glass.close()
-        if self._film is not None:
+        film, self._film = self._film, None
+        if film is None:
+            return
+        for folder in (self.screenshots, Path(tempfile.gettempdir()), Path.home()):
             try:
-                report(self._save_film(self._film))
+                report(self._save_film(film, folder))
+                return
             except RamtekError as refusal:
-                report(f"{refusal}; the film is lost")
-            self._film = None
+                report(str(refusal))
+        report("the film is lost: no folder could take it")
 
     def _to_be_shown(self) -> tuple[object, ...]:
         return self.source.stamp, self._glass.stamp, self.overlay.stamp
@@ -228,6 +240,12 @@ class Monitor:
         self._glass.fit = not self._glass.fit
         self.tell("the picture fills the window" if self.fit else "the picture at a whole multiple")
 
+    def turn_table(self) -> None:
+        """Show the words through the next table of grays, or again through the table of the display."""
+        scan_out = self._display.scan_out
+        scan_out.shown_table = next_table(scan_out.shown_table)
+        self.tell(f"the table {scan_out.shown_table}" if scan_out.shown_table else "the display's table")
+
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
         from ramtek_emu.png import save_numbered
@@ -242,25 +260,25 @@ class Monitor:
         from ramtek_emu.films import TimedFilm
 
         self._film = TimedFilm(self.source.field(), time.monotonic())
-        self._drops_film = False
+        self._closes_film = False
         # A program that gets messages would draw this message into the film.
         self.show_message("F3 ends it")
 
     def _tell_of_film(self, film: TimedFilm, reason: str = "") -> None:
         """End and save the film, and show its path. A film that cannot be saved is not lost."""
         try:
-            self.tell(reason + self._save_film(film))
+            self.tell(reason + self._save_film(film, self.screenshots))
         except RamtekError as refusal:
             self.tell(f"{refusal}; F3 tries again")
 
-    def _save_film(self, film: TimedFilm) -> str:
+    def _save_film(self, film: TimedFilm, folder: Path) -> str:
         """End the film, and save it under the next free number; returns a sentence with its path.
 
         Raises OutputError or WriteError.
         """
         from ramtek_emu.writing import write_numbered
 
-        path = write_numbered(film.end(time.monotonic()), self.screenshots, self.file_name, ".apng")
+        path = write_numbered(film.end(time.monotonic()), folder, self.file_name, ".apng")
         self._film = None
         return f"saved {path}, {film.fields:,} {'field' if film.fields == 1 else 'fields'}"
 
@@ -286,12 +304,12 @@ class Monitor:
         """
         if self.on_close is not None and not self.on_close():
             return
-        if self._film is not None and not self._drops_film:
+        if self._film is not None and not self._closes_film:
             try:
-                report(self._save_film(self._film))
+                report(self._save_film(self._film, self.screenshots))
             except RamtekError as refusal:
-                self.tell(f"{refusal}; F3 tries again, and closing again drops the film")
-                self._drops_film = True
+                self.tell(f"{refusal}; F3 tries again, and closing again saves the film elsewhere")
+                self._closes_film = True
                 return
         self.close()
 
@@ -302,7 +320,8 @@ class Monitor:
         elif isinstance(user_input, Pointer):
             self.handle_pointer(user_input)
         elif isinstance(user_input, Release):
-            self.handle_release(user_input)
+            if self.on_release is not None and user_input.name not in MODIFIERS:
+                self.on_release(user_input.name)
         elif isinstance(user_input, Close):
             self.ask_to_close()
         elif self.on_drop is not None:
@@ -314,38 +333,26 @@ class Monitor:
         Esc leaves full screen before anything else, and never closes the window. Shortcuts do not repeat
         while their key stays down.
         """
+        shortcuts: dict[str, Callable[[], object]] = {
+            "f3": self.toggle_recording,
+            "f10": self.toggle_fit,
+            "f11": self.toggle_full_screen,
+        }
+        # A program may take a second request to close in a row for consent to lose changes.
+        shortcuts |= {"return": self.toggle_full_screen} if key.alt else {}
+        shortcuts |= {"escape": self.toggle_full_screen} if self.full_screen else {}
+        shortcuts |= {"q": self.ask_to_close} if key.control else {}
+        pages: dict[str, Callable[[], object]] = {"f12": self._tell_of_screenshot}
+        pages |= {name: partial(self.overlay.turn_to, page) for name, page in PAGES.items()}
+        pages |= {"f2": self.turn_table} if self.on_key is None else {}
         if key.name in MODIFIERS:
             return
-        if key.name == "f11" or (key.name == "return" and key.alt):
-            if not key.repeated:
-                self.toggle_full_screen()
-        elif key.name == "escape" and self.full_screen:
-            self.toggle_full_screen()
-        elif key.name == "f3":
-            if not key.repeated:
-                self.toggle_recording()
-        elif key.name == "f10":
-            if not key.repeated:
-                self.toggle_fit()
-        elif key.name == "q" and key.control:
-            # A program may take a second request in a row for consent to lose changes.
-            if not key.repeated:
-                self.ask_to_close()
-        elif self.on_key is not None and self.on_key(key):
+        if key.name not in shortcuts and self.on_key is not None and self.on_key(key):
             return
-        elif key.name == "f12":
-            if not key.repeated:
-                self._tell_of_screenshot()
-        elif key.name in PAGES:
-            if not key.repeated:
-                self.overlay.turn_to(PAGES[key.name])
-        elif key.name == "escape":
+        if key.name == "escape" and not self.full_screen:
             self.overlay.page = ""
-
-    def handle_release(self, release: Release) -> None:
-        """Call `on_release` with the name of the key, unless it is a modifier."""
-        if self.on_release is not None and release.name not in MODIFIERS:
-            self.on_release(release.name)
+        elif not key.repeated and (run := (shortcuts | pages).get(key.name)):
+            run()
 
     def _tell_of_screenshot(self) -> None:
         """Take a screenshot, without a message on it, and show its path."""

@@ -1,4 +1,4 @@
-"""Executors of the instructions that draw: vectors, points, conics, circles and text.
+"""Executors of the instructions that draw: vectors, points, conics, circles, plots and text.
 
 Assumed: with the additive flag, the pixels between the dots of characters, rasters and textures stay
 unchanged, as its name suggests; without it the background word is written there.
@@ -16,8 +16,8 @@ from ramtek_emu.drawing import curves, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register
-from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register, signed
+from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
@@ -92,7 +92,7 @@ def write_circles(processor: Processor, instruction: Instruction) -> Pauses | No
     return follow(parameters, centers, slices)
 
 
-def write_conic(processor: Processor, instruction: Instruction) -> None:
+def write_conic(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: LIN (from the operating point to the data point, or for a number of pixels).
 
     Assumed: the operating point moves to the last pixel; of several data points the first is used; without a
@@ -101,13 +101,52 @@ def write_conic(processor: Processor, instruction: Instruction) -> None:
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
     stop = Point(*points[0].tolist()) if len(points) else None
-    elements, lines = curves.conic_pixels(parameters.conic, parameters.start, stop)
+    elements, lines = yield from curves.conic_pixels(parameters.conic, parameters.start, stop)
     word, _ = processor.colors(instruction)
     processor.frame_buffer.write_points(elements, lines, word, parameters.enable)
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
-def write_text(processor: Processor, instruction: Instruction) -> None:
+MARKS_AT_ONCE: Final = 256
+PIXELS_AT_ONCE: Final = 1 << 20
+"""Limits: the marks, and the pixels of marks, between two pauses; some 2 ms each."""
+
+
+def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
+    """Draw a bar for each number of the data, from the base line to the number.
+
+    Hardware: LIN libdoc (a starting point, a scanning mode, the dimension and the spacing in the direction of
+    scanning, a base line); LIN fplot.c (data are lines of the screen; DIM 1 and SPACE 1 put n numbers on n
+    elements, so that spacing is the distance of two bars and dimension the width of a bar).
+    Assumed: the opcode, by NCAR's name and by its place among the opcodes of the 9300; that all operands come
+    by flag words as in other instructions; that a mark is a bar in the foreground and includes both ends. The
+    second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters. The scan order gives the
+    direction of the steps; data and base line are the coordinates across it, absolute in each addressing
+    mode, with a sign. Only the memory and the write window clip. The operating point is then where the next
+    bar begins, at the last number, as fplot.c starts at the first number.
+    """
+    parameters = processor.parameters
+    order, width, step = parameters.order, max(1, parameters.dimensions[0]), parameters.spacing[0]
+    base = signed(parameters.base_line)
+    word, _ = processor.colors(instruction)
+    pixels = 0
+    for number, value in enumerate(processor.points(instruction, 1)[:, 0].tolist(), 1):
+        first = parameters.start
+        last = order.stepped(first, width - 1, 0)
+        (left, right), (top, bottom) = map(sorted, zip(first, last, strict=True))
+        low, high = sorted((base, value))
+        box = Window(low, top, high, bottom) if order.vertical else Window(left, low, right, high)
+        before = processor.frame_buffer.written
+        processor.frame_buffer.fill(box, word, parameters.enable)
+        pixels += processor.frame_buffer.written - before
+        element, line = order.stepped(first, step, 0)
+        parameters.start = register(Point(value, line) if order.vertical else Point(element, value))
+        if number % MARKS_AT_ONCE == 0 or pixels >= PIXELS_AT_ONCE:
+            pixels = 0
+            yield
+
+
+def write_text(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
     parameters = processor.parameters
     foreground, background = processor.colors(instruction)
@@ -120,7 +159,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
         transparent=bool(instruction.low_byte & Flags.ADDITIVE),
     )
     is_standard = parameters.font == STANDARD_FONT
-    next_cell = text.write_text(
+    next_cell = yield from text.write_text(
         processor.frame_buffer,
         characters() if is_standard else processor.loaded_characters,
         instruction.data_bytes(),
@@ -166,6 +205,7 @@ EXECUTORS: Final[Executors] = {
     "WPT": write_points,
     "CIRC": write_circles,
     "WC": write_conic,
+    "WPB": write_plot,
     "WT": write_text,
     "LPF": load_character,
     "LPFRP": load_reversed_character,

@@ -16,10 +16,20 @@ MOST_SAVED: Final = 16
 """The number of environments that PUSHE can save. Assumed: one more sets the illegal-instruction status."""
 
 
+FORMAT_OF_OPCODE: Final = {format.opcode: format for format in FORMATS}
+NO_OPCODES: Final = bytes(set(range(256)) - FORMAT_OF_OPCODE.keys())
+"""The opcodes that no display has."""
+
+
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: PRG (the status bit). Assumed: only the illegal word is skipped."""
+    """Hardware: PRG (the status bit). Assumed: only the illegal words are skipped."""
     processor.flag_illegal()
-    processor.illegal_words += max(1, len(instruction.data))
+    processor.illegal_words += len(instruction.data)
+    if processor.foreign is None and not processor.configuration.extended:
+        opcodes = instruction.data.astype(">u2").tobytes()[::2].translate(None, NO_OPCODES)
+        if opcodes:
+            format = FORMAT_OF_OPCODE[opcodes[0]]
+            processor.foreign = format.name if format.extended else "operand flags 2"
 
 
 def consume(processor: Processor, instruction: Instruction) -> None:
@@ -68,7 +78,8 @@ def restore_environment(processor: Processor, instruction: Instruction) -> None:
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
     """Reply the operands that the flag words name, in the order of the operand table.
 
-    Assumed: all of this. Without flag words every operand is replied.
+    Assumed: all of this. Without flag words every operand is replied. CONE is its six words: the lower halves
+    of coefficients that WC has sent as pairs.
     """
     names = instruction.operands or OPERANDS
     words = [word for name in names for word in processor.parameters.operand(name)]

@@ -83,7 +83,11 @@ def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Poin
     return iter([(parameters.window, parameters.start, count)])
 
 
-def write_raster(processor: Processor, instruction: Instruction) -> None:
+RASTER_BYTES: Final = 1 << 12
+"""The bytes of a raster that are written at once. Limit: a bound on the time between pauses, 1 to 4 ms."""
+
+
+def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     """Write one bit a pixel: foreground for 1, background for 0.
 
     Hardware: PRG rast.c, LIN wr.c (one bit a pixel into the window in scan order, bytes as in text, highest
@@ -93,13 +97,17 @@ def write_raster(processor: Processor, instruction: Instruction) -> None:
     written.
     """
     parameters = processor.parameters
-    bits = np.unpackbits(np.frombuffer(instruction.data_bytes(), np.uint8))
+    data = np.frombuffer(instruction.data_bytes(), np.uint8)
     foreground, background = processor.colors(instruction)
-    words = np.array((background, foreground), np.uint16)[bits]
-    dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
-    parameters.start = processor.frame_buffer.write_scan(
-        parameters.window, parameters.order, parameters.start, words, parameters.enable, dots
-    )
+    words = np.array((background, foreground), np.uint16)
+    for first in range(0, len(data), RASTER_BYTES):
+        if first:
+            yield
+        bits = np.unpackbits(data[first : first + RASTER_BYTES])
+        dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
+        parameters.start = processor.frame_buffer.write_scan(
+            parameters.window, parameters.order, parameters.start, words[bits], parameters.enable, dots
+        )
 
 
 def write_random_pixels(processor: Processor, instruction: Instruction) -> None:
@@ -136,8 +144,10 @@ def fill(processor: Processor, instruction: Instruction) -> Pauses:
         open_pixels = part == part[line, element]
     else:
         open_pixels = part != np.uint16(foreground & parameters.whole_word) & mask
-    filled = yield from area(open_pixels, line, element)
-    frame_buffer.fill(inside, foreground, parameters.enable, filled)
+    for lines, dots in (yield from area(open_pixels, line, element)):
+        strip = inside._replace(top=inside.top + lines.start, bottom=inside.top + lines.stop - 1)
+        frame_buffer.fill(strip, foreground, parameters.enable, dots)
+        yield
 
 
 MOST_COPIED: Final = 1 << 20

@@ -70,20 +70,26 @@ class Processor:
         """The dots of the loaded characters, (256, 12, 8)."""
         self.illegal_words = 0
         """The number of illegal words that were skipped; it never decreases."""
+        self.foreign: str | None = None
+        """The first instruction of the host that this display lacks and the 9460 has, such as "FILL".
+
+        "operand flags 2" stands for the second operand flag word in another instruction.
+        """
         self.unimplemented = 0
         """The number of instructions without effect, known by name only; it never decreases."""
         self._illegal = False
-        self._replies = bytearray()
+        self.replies = bytearray()
+        """The bytes of the replies that the host has not read."""
 
     def __repr__(self) -> str:
         state = f"{self.waiting} words of replies waiting, status {self.status.name}"
         return f"Processor({self.configuration.name}, {state})"
 
     def state(self) -> dict[str, Any]:
-        """All but the current parameters and the replies; the array is this memory itself."""
+        """All but the current parameters and the replies."""
         return {
             "saved": [parameters.state() for parameters in self.saved],
-            "loaded_characters": self.loaded_characters,
+            "loaded_characters": self.loaded_characters.copy(),
             "illegal": self._illegal,
             "illegal_words": self.illegal_words,
             "without_effect": self.unimplemented,
@@ -119,12 +125,12 @@ class Processor:
 
     def clear_replies(self) -> None:
         """Drop the replies that the host has not read."""
-        self._replies.clear()
+        self.replies.clear()
 
     @property
     def waiting(self) -> int:
         """The number of words that the host can receive."""
-        return len(self._replies) // 2
+        return len(self.replies) // 2
 
     def points(self, instruction: Instruction, columns: int = 2) -> Numbers:
         """The data as (n, columns) signed numbers; an incomplete row at the end is dropped."""
@@ -149,7 +155,7 @@ class Processor:
 
     def reply(self, words: Words) -> None:
         """Store words until the host receives them."""
-        self._replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
+        self.replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
 
     def take_reply(self, count: int) -> Words:
         """The next `count` words of the replies; ReplyError if fewer are waiting."""
@@ -158,8 +164,8 @@ class Processor:
                 f"the words received must be 0 to {self.waiting}, which wait, not {count!r}; "
                 "send an instruction that reads them first"
             )
-        words = np.frombuffer(bytes(self._replies[: 2 * count]), np.uint16).copy()
-        del self._replies[: 2 * count]
+        words = np.frombuffer(bytes(self.replies[: 2 * count]), np.uint16).copy()
+        del self.replies[: 2 * count]
         return words
 
     def colors(self, instruction: Instruction) -> tuple[int, int]:

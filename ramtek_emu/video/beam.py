@@ -57,10 +57,10 @@ class Beam:
         """Whether blinking cursors are shown in this field."""
         return self.field_number // self.timing.blink_fields % 2 == 0
 
-    def charge(self, words: int, pixels: int) -> None:
-        """Advance the clock by the time of an instruction."""
+    def charge(self, words: int, pixels: int, instructions: int = 1) -> None:
+        """Advance the clock by the time of instructions, with all their words and pixels."""
         timing = self.timing
-        self.nanoseconds += timing.instruction + words * timing.word + pixels * timing.pixel
+        self.nanoseconds += instructions * timing.instruction + words * timing.word + pixels * timing.pixel
 
     def wait_for_line(self, line: int) -> None:
         """Advance the clock to the beginning of a line; if the beam is on that line, no time passes."""

@@ -3,7 +3,8 @@
 What is modeled: each word selects its entry; display origin, zoom and video origin select the part of the
 memory that is shown; with fewer planes than the table has address bits, the upper bits of the table's address
 counter select the section of the table; the cursors; a black-and-white monitor; with a beam, lines that show
-the memories as they were when the beam passed. What is **not**: interlace, the levels of blanking and border.
+the memories as they were when the beam passed; a table of grays instead of the display's. What is **not**:
+interlace, the levels of blanking and border.
 
 Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter); PRG cmap.c,
 introdoc (a black-and-white monitor sees the low eight bits of an entry).
@@ -13,7 +14,7 @@ says how the 9300 mixed cursors into the video.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
@@ -58,8 +59,32 @@ class Stamp(NamedTuple):
     """All else that a field depends on."""
 
 
-CACHED: Final = ("_indices", "_indices_of", "_lines_with", "_gray")
-"""Attributes that are computed from the memories; a copy computes its own."""
+PAINTED_AT_ONCE: Final = 1 << 20
+"""The pixels that are painted at once behind a beam. Limit: a bound on the time between two pauses, 5 ms."""
+TABLES: Final = ("gray", "gray8")
+"""Tables of grays that may replace the display's: rising from word 1, or by the low eight bits of a word."""
+
+DARKEST: Final = 64
+"""Assumed: the gray of word 1 in the table "gray", 25 % of white, well apart from black."""
+
+
+def gray_table(name: str, words: int) -> PackedColors:
+    """The colors of so many words, 0x00RRGGBB, in one of `TABLES`.
+
+    >>> [f"{color:06x}" for color in gray_table("gray", 4)]
+    ['000000', '404040', 'a0a0a0', 'ffffff']
+    """
+    if name == "gray8":
+        levels = np.arange(words) & 0xFF
+    else:
+        # From white down: with one plane, word 1 is white.
+        levels = np.append(np.linspace(255, DARKEST, words - 1) + 0.5, 0)[::-1]
+    return levels.astype(np.uint32) * np.uint32(0x010101)
+
+
+def next_table(name: str) -> str:
+    """The table after a table: "gray", "gray8", and "" for the display's own."""
+    return dict(zip(("", *TABLES), (*TABLES, ""), strict=True))[name]
 
 
 class ScanOut:
@@ -78,6 +103,11 @@ class ScanOut:
         self.elements = configuration.shown_elements
         self.blink_is_on = True
         """Whether blinking cursors are shown; with a beam, the beam decides instead."""
+        self.shown_table = ""
+        """A table that is shown instead of the display's, one of `TABLES`; "" for the display's own.
+
+        It changes no memory, and it is no state of the display. The beam is ignored while it is shown.
+        """
         self._configuration = configuration
         self._frame_buffer = frame_buffer
         self._lookup_table = lookup_table
@@ -89,9 +119,6 @@ class ScanOut:
         # With a beam: the image on the monitor, and the number of lines painted since power-on.
         self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
         self._painted = 0
-        self._clear_caches()
-
-    def _clear_caches(self) -> None:
         # np.take is fastest with indices of type intp; they are updated when words were written. Measured:
         # mode "clip" takes 1.3 times as long; converting the words for each field, 32 lines at a time, 1.8
         # times; indices on huge pages take 3 % less, which is not worth the memory.
@@ -101,13 +128,7 @@ class ScanOut:
         shown_words = self._frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, PackedColors] = (-1, self._lookup_table.packed)
-
-    def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in vars(self).items() if name not in CACHED}
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        vars(self).update(state)
-        self._clear_caches()
+        self._gray_tables = {name: gray_table(name, self._words) for name in TABLES}
 
     def __repr__(self) -> str:
         return f"ScanOut({self.elements} x {self.lines})"
@@ -121,15 +142,16 @@ class ScanOut:
             view_of(self._parameters()),
             self._has_sections and self.first_entry,
             beam and beam.lines_done,
+            self.shown_table,
         )
         return Stamp(self._lookup_table.written, self._marks(), rest)
 
     def state(self) -> dict[str, Any]:
         """With a beam: the number of lines painted since power-on, and the image on the monitor.
 
-        The image is (lines, elements) uint32, 0x00RRGGBB; the array is the image itself.
+        The image is (lines, elements) uint32, 0x00RRGGBB.
         """
-        return {"lines_painted": self._painted, "monitor_image": self._monitor_image}
+        return {"lines_painted": self._painted, "monitor_image": self._monitor_image.copy()}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Show the monitor image of a state."""
@@ -138,7 +160,7 @@ class ScanOut:
 
     def scan_out_into(self, pixels: PackedColors) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
-        if self._beam is not None:
+        if self._beam is not None and not self.shown_table:
             self._finish_field(self._beam, pixels)
         else:
             self._update_indices()
@@ -182,24 +204,30 @@ class ScanOut:
         self.scan_out_into(pixels)
         return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
 
-    def follow_beam(self) -> None:
-        """Paint the lines that the beam has passed since the last call, from the memories as they are now."""
+    def follow_beam(self) -> Iterator[None]:
+        """Paint the lines that the beam has passed, from the memories as they are now, with pauses."""
         beam = self._beam
-        if beam is None or beam.lines_done == self._painted:
+        if beam is None:
             return
         total = beam.lines_per_field
-        start = max(self._painted, beam.lines_done - total)
-        begun = start // total * total
-        while begun < beam.lines_done:
-            first, last = max(start - begun, 0), min(beam.lines_done - begun, self.lines)
-            if first < last:
-                self._paint(first, last, self._monitor_image)
-            begun += total
-        self._painted = beam.lines_done
+        self._painted = max(self._painted, beam.lines_done - total)
+        at_once = max(1, PAINTED_AT_ONCE // self.elements)
+        while self._painted < beam.lines_done:
+            first = self._painted % total
+            if first >= self.lines:
+                # Skip the blanked lines.
+                self._painted = min(beam.lines_done, self._painted - first + total)
+                continue
+            last = min(first + at_once, self.lines, first + beam.lines_done - self._painted)
+            self._paint(first, last, self._monitor_image)
+            self._painted += last - first
+            if self._painted < beam.lines_done:
+                yield
 
     def _finish_field(self, beam: Beam, pixels: PackedColors) -> None:
         # Lines below the beam show the memories as they are now; in the retrace, all lines do.
-        self.follow_beam()
+        for _ in self.follow_beam():
+            pass
         line = beam.line if beam.line < self.lines else 0
         pixels[:line] = self._monitor_image[:line]
         self._paint(line, self.lines, pixels)
@@ -209,7 +237,7 @@ class ScanOut:
             self._parameters(), self._configuration, np.arange(self.elements), np.arange(first, last)
         )
         words = self._frame_buffer.words[np.ix_(lines, elements)]
-        self.table().take(words, out=pixels[first:last], mode="wrap")
+        self._own_table().take(words, out=pixels[first:last], mode="wrap")
 
     def _marks(self) -> tuple[Mark, ...]:
         blink_is_on = self.blink_is_on if self._beam is None else self._beam.blink_is_on
@@ -235,8 +263,20 @@ class ScanOut:
         self._lines_with.cache_clear()
         copy_shown(self._indices, self._frame_buffer.words, view)
 
+    @property
+    def is_dark(self) -> bool:
+        """Whether the memory has words other than 0, and every pixel that is shown is black."""
+        if not self._frame_buffer.words.any():
+            return False
+        self._update_indices()
+        return not self.table().take(self._indices, mode="wrap").any()
+
     def table(self) -> PackedColors:
-        """The colors of all words, 0x00RRGGBB: the shown section, in gray on a monochrome monitor."""
+        """The colors of all words, 0x00RRGGBB: those of `shown_table`, or the display's."""
+        return self._gray_tables[self.shown_table] if self.shown_table else self._own_table()
+
+    def _own_table(self) -> PackedColors:
+        """The shown section of the display's table, in gray on a monochrome monitor."""
         table = self._lookup_table.packed
         if self._configuration.monochrome:
             if self._gray[0] != self._lookup_table.written:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import struct
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +38,7 @@ from autocolor.sending import shown_colors
 from autocolor.testing import scenes
 from ramtek_emu import GMR_9300, Ramtek9300
 from ramtek_emu.arrays import Colors
+from ramtek_emu.png import chunks
 from ramtek_emu.testing import entries, rasters
 from tests.small import SMALL, car, cube, held, opened, sphere, wall_scene
 from tests.tables import call, first, refused
@@ -340,13 +340,7 @@ def test_a_display_shows_the_legend_of_a_smooth_picture_at_its_own_size() -> Non
 
 def suggested_palette(data: bytes) -> bytes:
     """The content of the chunk sPLT of a PNG file."""
-    place, content = 8, b""
-    while place < len(data):
-        (length,) = struct.unpack(">I", data[place : place + 4])
-        if data[place + 4 : place + 8] == b"sPLT":
-            content = data[place + 8 : place + 8 + length]
-        place += 12 + length
-    return content
+    return dict(chunks(data))[b"sPLT"]
 
 
 KINDS = [{}, {"words": "normals"}, {"scalar": Scalar("stress", bands=8, shades=4)}, {"dither": "ordered"}]

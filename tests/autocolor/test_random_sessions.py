@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import runpy
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from autocolor.screens.picture.watching import MESSAGE
 from autocolor.screens.session import PICTURE
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.sheet import Sheet
-from ramtek_emu import HostPort, Ramtek9300, TcpPort, instructions
+from ramtek_emu import FAMILY, HostPort, Ramtek9300, Recorder, TcpPort, instructions
 from ramtek_emu.host.server import TcpServer
 from tests.autocolor.journal.random_steps import summary
 from tests.autocolor.random_hand import RandomHand
@@ -95,8 +96,8 @@ def held_by_a_fresh_display(history: History | Scene) -> tuple[bytes, bytes]:
 def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     name: str, tmp_path: Path, state: Path
 ) -> None:
-    display, autosave = Ramtek9300(), Autosave()
-    viewer = begun(name, tmp_path, display)
+    display, autosave, sent = Ramtek9300(), Autosave(), BytesIO()
+    viewer = begun(name, tmp_path, Recorder(sent, display))
     first = held_by_a_fresh_display(viewer.studio.scene)
     hand = RandomHand(viewer, display, seed=len(name))
     for number in range(GESTURES):
@@ -119,6 +120,11 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     assert last == held_by_a_fresh_display(studio.scene)
     assert is_true_to_its_file(studio)
     assert studio.history.steps
+    # A display with the instructions of the 9460 finds no more in these words.
+    family = Ramtek9300(FAMILY)
+    family.send(np.frombuffer(sent.getvalue(), "<u2"))
+    assert held(family) == last
+    assert display.processor.illegal_words == 0
 
     autosave.update(studio.history, at_once=True)
     (path,) = state.glob(f"sessions/*/{JOURNAL}")

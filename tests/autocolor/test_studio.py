@@ -606,7 +606,7 @@ def test_named_views_are_saved_taken_and_removed_by_steps() -> None:
 def test_everything_can_be_sent_again() -> None:
     studio, display = opened()
     before = held(display)
-    display.frame_buffer.write(np.full((24, 32), 77, np.uint16))
+    display.frame_buffer.fill(display.frame_buffer.window, 77)
     studio.send_everything()
     assert held(display) == before
 

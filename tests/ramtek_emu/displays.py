@@ -8,39 +8,26 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from ramtek_emu import Configuration, Ramtek9300, instructions
-from tests.ramtek_emu.strategies import sent_words
-
-
-def sent(*texts: str, configuration: Configuration | None = None) -> Ramtek9300:
-    """A display that was sent these words, in hexadecimal."""
-    display = Ramtek9300() if configuration is None else Ramtek9300(configuration)
-    for text in texts:
-        display.send(np.array([int(word, 16) for word in text.split()], np.uint16))
-    return display
+from ramtek_emu import Ramtek9300, instructions
 
 
 @contextmanager
 def smallest_slices() -> Iterator[None]:
-    """Long instructions are executed in the smallest slices: by single lines, circles and runs."""
+    """Long instructions are executed in the smallest slices, such as single lines or circles."""
+    limits = {
+        "drawing.vectors": ("MOST_POINTS",),
+        "drawing.areas": ("MOST_PIXELS", "MOST_RUNS"),
+        "drawing.curves": ("PIXELS_AT_ONCE",),
+        "drawing.text": ("LINES_AT_ONCE", "PIXELS_AT_ONCE"),
+        "processor.drawing_executors": ("MARKS_AT_ONCE", "PIXELS_AT_ONCE"),
+        "processor.image_executors": ("MOST_COPIED", "RASTER_BYTES"),
+        "video.scan_out": ("PAINTED_AT_ONCE",),
+    }
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("ramtek_emu.drawing.vectors.MOST_POINTS", 1)
-        patch.setattr("ramtek_emu.drawing.areas.MOST_RUNS", 1)
-        patch.setattr("ramtek_emu.processor.image_executors.MOST_COPIED", 1)
+        for module, names in limits.items():
+            for name in names:
+                patch.setattr(f"ramtek_emu.{module}.{name}", 1)
         yield
-
-
-def box(display: Ramtek9300) -> tuple[int, int, int, int]:
-    """Left, top, right and bottom of the words that are not 0."""
-    lines, elements = np.nonzero(display.words)
-    return (int(elements.min()), int(lines.min()), int(elements.max()), int(lines.max()))
-
-
-def read(display: Ramtek9300, *words: int) -> list[int]:
-    """The replies of the display to these words."""
-    display.send(sent_words(words))
-    answer: list[int] = display.receive(display.processor.waiting).tolist()
-    return answer
 
 
 def colored(display: Ramtek9300) -> Ramtek9300:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from hypothesis import strategies as st
@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
 from ramtek_emu.instruction_set.instruction import OperandValue, encode, normal
-from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Window
 
 SMALL = Configuration(name="SMALL", elements=13, lines=9, planes=10)
 
 scan_codes = st.integers(0, 7)
 masks = st.integers(0, 1023) | st.just(0xFFFF)
-points = st.builds(Point, st.integers(-6, 18), st.integers(-6, 14))
 
 
 @st.composite
@@ -38,28 +37,46 @@ def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
     return np.array([number & 0xFFFF for number in numbers], np.uint16)
 
 
+SLICED = ("WVL", "WVU", "CIRC", "FILL", "COPY", "WT", "WR", "WC", "WPB")
+"""Instructions that can be executed in slices."""
+DRAWING = (*SLICED, "ERS", "WI", "RI", "WPT", "WRP", "SET")
+
+
 @st.composite
-def sliced_instructions(draw: st.DrawFn) -> NDArray[np.uint16]:
-    """An instruction that can be executed in slices, with small or far coordinates and any flags."""
-    coordinate = st.integers(-6, 18) | st.sampled_from([-0x8000, 0x7FFF])
+def drawing_instructions(
+    draw: st.DrawFn, names: Sequence[str] = DRAWING, farthest: int = 0x7FFF
+) -> NDArray[np.uint16]:
+    """An instruction near the small memory or far away, with any flags, operands and data."""
+    coordinate = st.integers(-6, 18) | st.sampled_from([-farthest - 1, farthest])
+    small = st.integers(0, 3)
     operands: dict[str, st.SearchStrategy[OperandValue | None]] = {
         "mask": masks,
-        "foreground": st.integers(0, 1023),
+        "foreground": st.integers(0, 3) | st.integers(0, 0xFFFF),
         "background": st.integers(0, 1023),
         "index_1": st.tuples(coordinate, coordinate),
-        "window": windows(),
-        "scan_order": st.integers(0, 7),
+        "index_2": st.tuples(coordinate, coordinate),
+        "window": windows() | st.tuples(*[coordinate] * 4),
+        "scan_order": st.integers(0, 8),
+        "dimensions": st.tuples(st.integers(0, 9), st.integers(0, 17)),
+        "spacing": st.tuples(small, small),
+        "base_line": coordinate,
+        "scale": st.sampled_from([0, 0, 1, 0x0100, 0x0201]),
         "start": st.tuples(coordinate, coordinate),
         "read_mask": masks,
         "write_window": windows(),
-        "texture": st.tuples(st.sampled_from([0xFFFF, 0xAAAA, 0xF731]), st.integers(0, 3)),
+        "texture": st.tuples(st.sampled_from([0xFFFF, 0xAAAA, 0xF731]), small),
+        "image_mode": small,
     }
     given_operands = draw(st.fixed_dictionaries({}, optional=operands))
-    flags = (
-        draw(st.sampled_from([0, 0x40, 0xC0]))
-        | draw(st.sampled_from([0, 0x10]))
-        | draw(st.sampled_from([0, 0x20]))
-    )
-    data = sent_words(draw(st.lists(coordinate, max_size=40)))
-    name = draw(st.sampled_from(["WVL", "WVU", "CIRC", "FILL", "COPY"]))
-    return encode(normal(name, given_operands, data, flags=flags))
+    name = draw(st.sampled_from(names))
+    if name == "SET":
+        numbers = draw(st.lists(st.integers(-20, 20), min_size=5, max_size=5))
+        given_operands["conic"] = [*numbers, draw(st.integers(0, 60))]
+    flags = draw(st.sampled_from([0, 0x40, 0x80, 0xC0])) | draw(st.sampled_from([0, 8, 0x10, 0x20]))
+    has_points = name in ("WVL", "WVU", "CIRC", "WC", "WPT", "COPY")
+    number = coordinate if has_points else coordinate | st.integers(0, 0xFFFF)
+    data = sent_words(draw(st.lists(number, max_size=24 if has_points else 40)))
+    length = max(0, 2 * len(data) - draw(st.integers(0, 1)))
+    if name == "RI":
+        length, data = draw(st.integers(0, 300)), data[:0]
+    return encode(normal(name, given_operands, data, length, flags))

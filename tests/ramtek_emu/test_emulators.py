@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -18,11 +19,12 @@ from tests.ramtek_emu.processes import ROOT, field_of
 from tests.ramtek_emu.serving import serving_at, until
 
 CLIENT = ROOT / "examples" / "ramtek_client.c"
+DEVICE = ROOT / "examples" / "ramtek_device.c"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have no Unix sockets of packets")
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc compiles the client")
-def test_a_client_in_c_draws_reads_back_and_resets(tmp_path: Path) -> None:
+def test_a_client_in_c_draws_and_reads_back(tmp_path: Path) -> None:
     program = tmp_path / "client"
     subprocess.run(["gcc", "-Wall", "-Wextra", "-Werror", "-o", program, CLIENT], check=True, timeout=60)
     with serving_at(tmp_path / "display") as server:
@@ -30,8 +32,76 @@ def test_a_client_in_c_draws_reads_back_and_resets(tmp_path: Path) -> None:
             [program, server.address], stdout=subprocess.PIPE, text=True, check=True, timeout=60
         )
         until(lambda: server.served == 1)
-        assert not server.display.words.any()
-    assert done.stdout == "the pixel is 5\nafter a reset it is 0\n"
+        assert server.display.words.any()
+    assert done.stdout == "the pixel is 5\n"
+
+
+OLD_PROGRAM = """
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+int main(void)
+{
+    /* A text instruction of 21 bytes, RSCP, FILL of the screen, and RI of 32767 words. */
+    static const char text[] = "\\x03\\x0c\\x40\\0\\0\\0\\0\\0\\x40\\x01\\x09\\0\\6\\0VENE21";
+    static const char ask[] = "\\0\\x17", erase[] = "\\x12\\x09\\2\\0\\x55\\1";
+    static const char image[] = "\\1\\x0b\\xfe\\xff";
+    static unsigned char reply[65535];
+    char line[4];
+    int device = open("/dev/ramtek", O_RDWR), copy = dup(device), ends[2];
+
+    printf("%zd ", write(device, text, 21));
+    printf("%zd ", write(copy, ask, 2));
+    printf("%zd ", read(device, reply, 2));
+    printf("%zd ", read(copy, reply, 3));
+    close(device);
+    write(copy, erase, 6);
+    write(copy, image, 4);
+    printf("%zd ", read(copy, reply, 65535));
+    printf("%x\\n", reply[65532] | reply[65533] << 8);
+    /* All other files are as without the library. */
+    if (open("/dev/no ramtek", O_RDONLY) >= 0 || pipe(ends) || write(ends[1], "abc", 3) != 3)
+        return 1;
+    return read(ends[0], line, 4) != 3;
+}
+"""
+PYTHON = """
+import os
+device = os.open("/dev/ramtek", os.O_RDWR)
+os.write(device, bytes.fromhex("0209 4400 0700 0900 0800 0900 0800 21"))
+os.write(os.dup(device), bytes.fromhex("030b 4000 0900 0800 0900 0800 0200"))
+print(os.read(device, 2).hex())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems load libraries otherwise")
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc compiles the library")
+def test_a_library_gives_programs_their_device_with_the_writes_and_reads_of_the_drivers(
+    tmp_path: Path,
+) -> None:
+    library, program = tmp_path / "device.so", tmp_path / "program"
+    (tmp_path / "program.c").write_text(OLD_PROGRAM)
+    strict = ["gcc", "-Wall", "-Wextra", "-Werror", "-Wno-unused-result"]
+    subprocess.run([*strict, "-shared", "-fPIC", "-o", library, DEVICE, "-ldl"], check=True, timeout=60)
+    subprocess.run([*strict, "-o", program, tmp_path / "program.c"], check=True, timeout=60)
+    with serving_at(tmp_path / "display") as server:
+        variables = {
+            **os.environ,
+            "LD_PRELOAD": str(library),
+            "RAMTEK_DEVICE": "/dev/ramtek",
+            "RAMTEK_SOCKET": server.address,
+        }
+        printed = [
+            subprocess.run(
+                command, env=variables, stdout=subprocess.PIPE, text=True, check=True, timeout=60
+            ).stdout
+            for command in ([program], [sys.executable, "-c", PYTHON])
+        ]
+        until(lambda: server.served == 2)
+        assert server.display.processor.illegal_words == 0
+    assert printed == ["21 2 2 2 65534 155\n", "0700\n"]
 
 
 @pytest.mark.skipif(shutil.which("pdp11") is None, reason="SIMH simulates the PDP-11")

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
+import base64
 import random
 import struct
 import tracemalloc
 import zlib
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +14,18 @@ from hypothesis import given
 from PIL import Image
 
 from ramtek_emu import (
-    GMR_9300,
     PRINCETON_9300,
     MissingInputError,
     Ramtek9300,
     RamtekError,
     SnapshotError,
-    instructions,
     read_snapshot,
     write_snapshot,
 )
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.png import SIGNATURE, chunk
 from ramtek_emu.snapshot import (
     MOST_TEXT,
     display_of,
@@ -36,7 +35,6 @@ from ramtek_emu.snapshot import (
     snapshot_bytes,
 )
 from ramtek_emu.testing import streams
-from ramtek_emu.timing import Timing
 from tests.ramtek_emu.recorded_streams import BYTE_IMAGE, DECODED, OUTLINE, words
 from tests.ramtek_emu.strategies import SMALL
 
@@ -100,20 +98,38 @@ def test_after_any_words_a_snapshot_goes_on_as_the_display_does(before: list[int
     assert display.receive(count).tolist() == again.receive(count).tolist()
 
 
-def test_time_goes_on_where_it_was() -> None:
-    display = Ramtek9300(replace(GMR_9300, timing=Timing(pixel=900)))
-    display.send(instructions.load_entries(0, [[200, 0, 0]] * 1024))
-    # Send images until the beam is in the middle of a field.
+OLD = zlib.decompress(
+    base64.b85decode(
+        b"c-rk*&yO256n0g0g(_7l94f&9ExvXr`MKMTw1<=|B~>Y9sR~tCO`I9e#KdE#wr7*DijcTf;s~62gaZ=d1b+qM$Ugz%%n6D2J"
+        b"el2ALY(#j_=}Rvv!Ctvp5^(h_nzFpcl*laS1uDmt_<HE9K!!4_+GpUKjg;GZ{_g!syq15y{|L3V1^UJ3dd(LFUoDJ*xXLF+i"
+        b"vPh*-wOAxQ?2MR+-34!<^8HoKVFIPJ8s-y8{|gE_uO~v$WTZs1%CBQ#+z_$^2up5z%8|#YFP>OjVUqp0#gARgIuv1d6ThP9?"
+        b"44Oq+r^Sn_^<co?@jxa`t#mGYGKoGE!klhRmiaKVTcTIpnJG+LQ4X`$PRLa3bfPP~b<x6|(IwIVtJD`z~dE$Dy?LRpwGL08d"
+        b"wKtvbXq?G`Ui6xh`cN3o{Fm4uSg3A<F?ylFL|M15X2>7QMHmUWjoNqe@K0?%3ni_7=v1gp5@2rN0{eXagfPizt{yts*`t=7d"
+        b"0`Gl?ui`lalH-mWi}a-zNCXA5Ga!O)w+(N7U>KeoU8>ac*n}msT5KREq<k4SX>Zhs8b`I<0(mdm1z8)B3w7GPfPP#9#i$iEp"
+        b"~)sp#lRxm_z6=1L}-CxfC5Il(H?5dS>h>bGYO24+$(3L+RzaQz{Mf~rDpVcD{4o(o}e0jh6%G3mwH8;7%gS>=$LV*6C2Lb_&"
+        b"MhnMmQcnXLToP9n~E=%Pc<|?|^zs1B;BR;n<c63xvOl6UmU_Fk}VGd0gnUvgQ-53vYGvG+Z%r@kBd^9UGR;v~pg3G1c<#Evh"
+        b";;eB5fU!8>-0*MQMK>?mrU>!w!5ocpHY)SJ)$bw7{RzrXb3M}%CR`g3b^0(T~D;Mhvd;Jz0pQ#i{B9%Z;ag*RP5K)^G2FN7c"
+        b"<ARr(hARr(h;J*nPQ6VMInXKzT8_}l}s%j8ctI}92x$>z9#gw)@(JJ*druN>>&BpqLyT5%)$c3)2c2$)mtk___Wpq-PxO`o!"
+        b"%Ez>P62@_#wCMPH4km#r6YP}D`Dt<@|2M>OpRO?zWLPq*z3?u@!p3u~TAdZzQX`Hzro~1LO#b*3(9!zOufBLn2<c$}b4(hMl"
+        b"e!q#sf%Wqu;F)>A3qxQ-+Z)scx!n3PQS~B)BfP`8~ttqHf$Zdb^~U4c{u1lSUye0<8(Y3XXN6wt%qAXTMuA|ej(Ss?0<twWO"
+        b"#6I@cpgvXMX{kz{P9"
+    )
+)
+"""A file of 2026 in the format of version 1, of a display with a beam; it must be readable forever."""
+
+
+def test_a_file_of_version_1_is_read_and_written_as_it_was() -> None:
+    display = display_of(OLD)
+    assert snapshot_bytes(display) == OLD
+    assert display.words[:2, :3].tolist() == [[1, 2, 3], [4, 5, 6]]
+    assert display.field()[:, 3].tolist() == [[0x11, 0x22, 0x33]] * 3
+    assert display.processor.parameters.conic == (1, -2, 3, 70000, 0, 9)
+    assert display.processor.saved[0].index_2 == (9, 7)
+    assert display.processor.loaded_characters.sum() == display.cursors[0].shape.sum() == 1
+    assert (display.cursors[0].element, display.cursors[0].line, display.joystick.track) == (3, 2, True)
+    assert (display.status.name, display.processor.illegal_words) == ("CURSOR|ILLEGAL|READY", 1)
     assert display.beam is not None
-    while not 240 < display.beam.line < 300:
-        display.send(instructions.write_image([[5] * 100]))
-    display.send(instructions.load_entries(0, [[0, 0, 200]] * 1024))
-    assert display.field()[[0, 479], 300].tolist() == [[200, 0, 0], [0, 0, 200]]
-    again = display_of(snapshot_bytes(display))
-    same(display, again)
-    for one in (display, again):
-        one.send(OUTLINE)
-    same(display, again)
+    assert display.beam.lines_done == 40
 
 
 def test_a_snapshot_is_a_picture_that_others_read(tmp_path: Path) -> None:
@@ -134,11 +150,11 @@ def test_a_snapshot_is_a_picture_that_others_read(tmp_path: Path) -> None:
         write_snapshot(str(tmp_path / "other.png"), display)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("text", ["", "null", "[" * 100_000, "{}", "9" * 5000, '{"now":1,"now":2}', "NaN"])
-@pytest.mark.parametrize("keyword", ["configuration", "lookup table", "parameters", "processor", "cursors"])
-def test_a_text_that_is_no_state_is_refused(keyword: str, text: str) -> None:
-    with pytest.raises(SnapshotError):
-        display_of(with_text(keyword, text))
+@pytest.mark.parametrize("text", ["", "null", "[" * 100_000, "{}", "9" * 5000, '{"all":1,"all":2}', "NaN"])
+def test_a_text_that_is_no_state_is_refused(text: str) -> None:
+    for keyword in ("configuration", "cursors"):
+        with pytest.raises(SnapshotError):
+            display_of(with_text(keyword, text))
 
 
 @pytest.mark.parametrize("count", [100, pytest.param(600, marks=pytest.mark.thorough)])
@@ -180,27 +196,24 @@ def test_mutated_snapshots_are_read_or_refused(count: int) -> None:
             '"elements":99999999',
             "a configuration that can be built: elements must be",
         ),
-        ("configuration", '"elements":13', '"elements":-1', "must have a configuration that can be built"),
-        ("configuration", '"planes":10', '"planes":1', "a word of a snapshot must be 0 to 1, not "),
+        (
+            "configuration",
+            '"planes":10',
+            '"planes":1',
+            "a word of a snapshot must be a whole number from 0 to 1, not ",
+        ),
         ("configuration", '"PAIR_24"', '"PAIR_99"', "entry_format must be an EntryFormat"),
         ("configuration", '"name":"SMALL"', f'"name":"{60 * "a"}"', ""),
         ("configuration", '"name":"SMALL"', f'"name":"{61 * "a"}"', "name of a snapshot must be a name"),
-        ("configuration", '"name":"SMALL"', '"name":""', "name of a snapshot must be a name"),
         ("configuration", '"name":"SMALL"', '"name":"\\n"', "name of a snapshot must be a name"),
-        ("configuration", '"name":"SMALL"', '"name":"\\u00e9"', "name of a snapshot must be a name"),
         ("configuration", '"lines"', '"limes"', "must be an object of name"),
         ("parameters", '"scan_order":0', '"scan_order":"0"', "parameters.scan_order of a snapshot"),
-        ("parameters", '"scan_order":0', '"scan_order":1e9', "parameters.scan_order of a snapshot"),
         ("parameters", '"scan_order":0', '"scan_order":true', "parameters.scan_order of a snapshot"),
-        ("parameters", '"zoom":[1,1]', '"zoom":[16,1]', ""),
         ("parameters", '"zoom":[1,1]', '"zoom":[0,1]', "parameters.zoom[0] of a snapshot must be a whole"),
-        ("parameters", '"zoom":[1,1]', '"zoom":[1,17]', "parameters.zoom[1] of a snapshot must be a whole"),
         ("parameters", '"zoom":[1,1]', '"zoom":[1]', "must be 2 items"),
-        ("parameters", '"zoom":[1,1]', '"zoom":true', "must be 2 items"),
         ("cursors", '"track":false', '"track":0', "track of a snapshot must be true or false, not 0"),
         ("cursors", '"shape":"', '"shape":"!', "bytes in base64"),
         ("cursors", '"shape":"', f'"shape":"{9999 * "a"}', f"not '{59 * 'a'}...; take a new one"),
-        ("lookup table", '"address":0', '"address":2047', ""),
         ("lookup table", '"address":0', '"address":65536', "table_address of a snapshot"),
         ("processor", '"illegal":false', '"illegal":null', "illegal of a snapshot must be true or false"),
     ],
@@ -251,16 +264,12 @@ def test_a_list_is_no_longer_than_it_may_be() -> None:
         from_plain([(0, 0)], [[1, 2]] * 257, "cursors.tracking_devices")
 
 
-def chunk(kind: bytes, content: bytes) -> bytes:
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-
 def sized(elements: int, lines: int, depth: int = 16, color: int = 0, interlaced: int = 0) -> bytes:
     return struct.pack(">IIBBBBB", elements, lines, depth, color, 0, 0, interlaced)
 
 
 def hostile(*chunks: bytes, header: bytes = sized(13, 9)) -> bytes:
-    return b"\x89PNG\r\n\x1a\n" + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
+    return SIGNATURE + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
 
 
 def picture(elements: int, lines: int, *chunks: bytes) -> bytes:
@@ -277,9 +286,9 @@ TIME = chunk(b"tIME", b"")
     [
         (b"", "begin as a PNG file does"),
         (b"GIF89a", "begin as a PNG file does"),
-        (SNAPSHOT[:-5], "have whole chunks"),
-        (SNAPSHOT[:40], "have whole chunks"),
-        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksum"),
+        (SNAPSHOT[:-5], "whole chunks"),
+        (SNAPSHOT[:40], "whole chunks"),
+        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksums"),
         (hostile(header=sized(1 << 31, 1)), "1 to 4096 elements and lines"),
         (picture(4097, 1), "1 to 4096 elements and lines"),
         (picture(1, 4097), "1 to 4096 elements and lines"),
@@ -306,7 +315,7 @@ def test_a_hostile_file_is_refused_by_one_sentence(data: bytes, part: str) -> No
     with pytest.raises(SnapshotError) as refusal:
         picture_of(data)
     assert part in str(refusal.value)
-    assert str(refusal.value).endswith("take a new one with --snapshot")
+    assert str(refusal.value).endswith("with --snapshot")
 
 
 def test_pixels_that_are_too_many_take_no_memory() -> None:

@@ -21,24 +21,17 @@ def begins(opcode: int, stream: list[int]) -> bool:
 
 
 REACHED: dict[str, tuple[st.SearchStrategy[Any], Callable[[Any], bool]]] = {
-    **{
-        f"{word} of {planes} planes": (words(planes), partial(eq, word))
-        for planes in (1, 8, 10, 16)
-        for word in (0, (1 << planes) - 1)
-    },
+    "the largest word of 10 planes": (words(), partial(eq, 1023)),
+    "the largest word of 16 planes": (words(16), partial(eq, 0xFFFF)),
     "no words": (streams(), partial(eq, [])),
     "all words that may be": (streams(9), lambda stream: len(stream) == 9),
-    "a raster of 0": (rasters(1, 1), lambda raster: raster[0, 0] == 0),
-    "a raster of the largest word": (rasters(1, 1), lambda raster: raster[0, 0] == 1023),
-    "a raster of 16 planes": (rasters(1, 1, 16), lambda raster: raster[0, 0] == 0xFFFF),
     "an entry of 0 and 255": (entries(2), lambda table: table.min() == 0 and table.max() == 255),
     **{f"the word {word}": (streams(1), partial(eq, [word])) for word in (0, 12, 0xFFFF)},
     **{
         f"the instruction {format.name}": (streams(1), partial(begins, format.opcode))
-        for format in (SUBSTANTIATED[-1], FORMATS[0], FORMATS[-1])
+        for format in (SUBSTANTIATED[-1], FORMATS[-1])
     },
-    "an instruction without flags": (streams(1), partial(eq, [SUBSTANTIATED[0].opcode << 8])),
-    "an instruction with all": (streams(1), partial(eq, [SUBSTANTIATED[0].opcode << 8 | 0xFF])),
+    "an instruction with all flags": (streams(1), partial(eq, [SUBSTANTIATED[0].opcode << 8 | 0xFF])),
 }
 """Values at the edges, by what they are: a strategy, and what is looked for."""
 
@@ -57,6 +50,8 @@ def test_rasters_and_entries_have_the_shapes_and_types_of_the_memories(
     assert (raster.shape, raster.dtype.str, usual.shape) == ((3, 4), "<u2", (9, 13))
     assert (table.shape, table.dtype.str, whole.shape) == ((5, 3), "|u1", (1024, 3))
     check_words_within_planes(raster)
+    check_words_within_planes([])
+    check_words_within_planes([[0, 1]], 1)
     assert len(stream) <= 7
     check_words_within_planes(stream, 16)
 
@@ -64,13 +59,11 @@ def test_rasters_and_entries_have_the_shapes_and_types_of_the_memories(
 @pytest.mark.parametrize(
     ("wrong", "planes", "message"),
     [
-        ([[0, 1023], [7, 1024]], 10, "from 0 to 1023, not 1024 (line 1, element 1)"),
         (np.array([[-1, 5]]), 10, "from 0 to 1023, not -1 (line 0, element 0)"),
         (np.array([[0, 256, 999]], np.uint16), 8, "from 0 to 255, not 256 (line 0, element 1), and 1 more"),
         ([0, 70000], 16, "from 0 to 65535, not 70000 (at index 1)"),
         (4096, 12, "from 0 to 4095, not 4096"),
         ([[0.5]], 10, "from 0 to 1023, not float64"),
-        ([True], 10, "from 0 to 1023, not bool"),
         ([[[0, 9999]]], 10, "from 0 to 1023, not 9999 (at (0, 0, 1))"),
     ],
 )
@@ -78,10 +71,3 @@ def test_words_outside_of_the_planes_are_told_with_their_place(wrong: Any, plane
     with pytest.raises(AssertionError) as failure:
         check_words_within_planes(wrong, planes)
     assert str(failure.value) == f"words must be whole numbers {message}"
-
-
-@pytest.mark.parametrize("planes", [1, 10, 16])
-def test_words_within_the_planes_pass_whatever_their_type(planes: int) -> None:
-    largest = (1 << planes) - 1
-    for right in ([], 0, [[0, largest]], np.array([largest], np.int64), np.full((2, 2), largest, np.uint16)):
-        check_words_within_planes(right, planes)

@@ -13,10 +13,11 @@ from autocolor import Studio, read_scene
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from ramtek_emu import Ramtek9300, Recorder
-from ramtek_emu.inspection.histories import finished, next_change, writes_to_entry, writes_to_pixel
+from ramtek_emu.inspection.histories import EntryRange, finished, history_of, next_change
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
+from ramtek_emu.memory.scan_orders import Window
 from ramtek_emu.snapshot import snapshot_bytes
 from scenes.modeling.bracket import make as bracket
 from scenes.modeling.bracket.skin import PARTS
@@ -213,9 +214,10 @@ def test_a_picture_is_sent_once_and_a_recoloring_loads_the_table_alone() -> None
     assert finished(next_change(replay, display.frame_buffer.window, before)) is None
     body = studio.level_ranges["body"]
     line, element = np.argwhere((display.words >= body.first) & (display.words <= body.last))[0].tolist()
-    writes = finished(writes_to_pixel(replay, line, element, len(stream)))
+    writes = finished(history_of(replay, Window(element, line, element, line), len(stream)))
     assert writes[-1].after == display.words[line, element]
     assert writes[-1].number <= before
-    last = finished(writes_to_entry(replay, int(display.words[line, element]), len(stream)))[-1]
+    entry = int(display.words[line, element])
+    last = finished(history_of(replay, EntryRange(entry, entry + 1), len(stream)))[-1]
     assert last.number > before
-    assert last.after == int(display.lookup_table.packed[display.words[line, element]])
+    assert last.after == int(display.lookup_table.packed[entry])

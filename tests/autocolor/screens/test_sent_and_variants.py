@@ -238,7 +238,7 @@ def test_a_long_listing_says_how_many_words_it_leaves_out(lines: int, elements: 
 
 
 def test_a_display_with_short_entries_counts_a_word_for_each() -> None:
-    words = instructions.load_short_entries(3, np.zeros((40, 3), np.uint8))
+    words = instructions.load_entries(3, np.zeros((40, 3), np.uint8), short=True)
     rows = rows_of_edit(LastEdit(SCENE, SCENE, words, 0), PRINCETON_9300)
     assert "40 entries" in rows[1].text
 

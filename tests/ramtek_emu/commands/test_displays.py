@@ -144,9 +144,35 @@ def test_a_recording_that_fails_is_reported_once_and_the_display_goes_on_without
     assert done.stderr.splitlines() == [
         "ramtek: r.ramtek is full",
         "the display goes on without its recording",
+        "words were drawn, and nothing is lit: --table gray shows them (F2 in a window)",
         "wrote s.png",
     ]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["drawing", "s.png"]
     twin = Ramtek9300()
     twin.send(OUTLINE)
     assert np.array_equal(read_snapshot("s.png").words, twin.words)
+
+
+def test_a_hint_comes_once_when_words_are_dark_or_an_instruction_is_missing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    display = Ramtek9300()
+    with running(display) as run:
+        assert run.hint(display) == ""
+        display.send(OUTLINE)
+        display.processor.foreign = "WCI"
+        hints = run.hint(display)
+        assert hints.split("; ", 1)[0].endswith("--table gray shows them (F2 in a window)")
+        assert hints.endswith("WCI is no instruction of a 9300; --configuration family has it")
+    assert capsys.readouterr().err.splitlines() == hints.split("; ", 1)
+
+
+@pytest.mark.parametrize("command", ["play", "inspect"])
+def test_a_table_of_grays_shows_a_stream(command: str, tmp_path: Path) -> None:
+    path, output = tmp_path / "outline.ramtek", tmp_path / "a.png"
+    path.write_bytes(stream(OUTLINE))
+    shown = CliRunner().invoke(ramtek, [command, str(path), "--table", "gray", "-o", str(output)])
+    assert shown.stderr == f"wrote {output}\n"
+    display = Ramtek9300()
+    display.send(OUTLINE)
+    assert ((field_of(output)[..., 0] >= 64) == (display.words > 0)).all()

@@ -182,7 +182,7 @@ def test_help_has_examples_and_loads_nothing_heavy() -> None:
     assert shown.stderr.strip() == ""
 
 
-@pytest.mark.parametrize("command", [[], ["play"], ["list"], ["serve"], ["inspect"], ["diff"]])
+@pytest.mark.parametrize("command", [["play"], ["list"], ["serve"], ["inspect"], ["diff"]])
 def test_the_names_of_configurations_are_completed(command: list[str]) -> None:
     shell = BashComplete(ramtek, {}, "ramtek", "_RAMTEK_COMPLETE")
     found = shell.get_completions([*command, "--configuration"], "p")

@@ -95,7 +95,7 @@ def test_a_reply_comes_before_the_next_word_is_sent_and_dribbled_bytes_are_words
 def test_only_replies_are_on_stdout_and_the_rest_is_said_on_stderr(
     sent: str, replies: bytes, said: list[str]
 ) -> None:
-    answered = run("serve", "--stdio", data=stream(words(sent)))
+    answered = run("serve", "--stdio", "--configuration", "family", data=stream(words(sent)))
     assert (answered.returncode, answered.stdout) == (0, replies)
     assert answered.stderr.decode().splitlines() == said
 
@@ -128,7 +128,7 @@ def test_a_server_prints_its_port_serves_hosts_in_turn_and_ends_at_a_signal(tmp_
             with socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2]))) as host:
                 host.sendall(stream(mark(number + 1)))
         TcpPort(address).close()
-        assert ended(process, signal.SIGTERM) == f"wrote {picture}\n"
+        assert ended(process, signal.SIGTERM).endswith(f"them (F2 in a window)\nwrote {picture}\n")
     end = read_snapshot(picture)
     assert end.configuration.name == "JPL_9460"
     assert end.words[9, :40].tolist() == list(range(1, 41))

@@ -166,7 +166,7 @@ def test_an_incomplete_end_is_dropped_and_reported_with_its_file() -> None:
 def test_a_stream_that_is_read_whole_has_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     Path("long").write_bytes(bytes(10))
     monkeypatch.setattr(displays, "MOST_READ", 10)
-    assert len(displays.read_stream("long", PRINCETON_9300)) == 5
+    assert len(displays.read_stream("long", PRINCETON_9300).words) == 5
     monkeypatch.setattr(displays, "MOST_READ", 9)
     with pytest.raises(WordsError, match="at most 9 bytes here"):
         displays.read_stream("long", PRINCETON_9300)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from ramtek_emu import MissingInputError, Ramtek9300
-from ramtek_emu.host.joystick import MOST_BYTES, JoystickLines, actions, lines_of
+from ramtek_emu.host.joystick import JoystickLines, actions
 from tests.ramtek_emu.serving import until
 
 
@@ -96,16 +96,3 @@ def test_bytes_that_are_no_lines_are_read_in_bounded_memory(tmp_path: Path) -> N
     lines = JoystickLines(str(path), display.joystick, display.reset, answers.append)
     obey_until(lines, lambda: display.joystick.position == (5, 6))
     assert all(len(answer) < 600 for answer in answers)
-    number = os.open(path, os.O_RDONLY)
-    assert max(map(len, lines_of(number))) <= 2 * MOST_BYTES + 1
-    os.close(number)
-
-
-@pytest.mark.parametrize(("size", "is_cut"), [(4095, False), (4096, False), (4097, True)])
-def test_a_line_has_at_most_4096_bytes(tmp_path: Path, size: int, is_cut: bool) -> None:
-    path = tmp_path / "lines"
-    path.write_bytes(b"x" * size)
-    with path.open("rb") as file:
-        (line,) = lines_of(file.fileno())
-    assert line.startswith("?") is is_cut
-    assert len(line) == min(size, 4097)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, Ramtek9300, instructions
+from ramtek_emu import FAMILY, Ramtek9300, instructions
 from ramtek_emu.arrays import Colors
 from ramtek_emu.films import write_film
 from ramtek_emu.host.pipe import (
@@ -22,7 +22,6 @@ from ramtek_emu.host.pipe import (
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.disassembler import items
-from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.monitor.window import Monitor
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.film_reader import decoded
@@ -95,7 +94,7 @@ def in_pieces(data: bytes, cuts: list[int]) -> Callable[[int], bytes]:
 
 def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
     """The pieces that a paced reader returns for a stream in pieces."""
-    read = PacedReader(in_pieces(data, cuts), rate, GMR_9300, clock, clock.sleep)
+    read = PacedReader(in_pieces(data, cuts), rate, FAMILY, clock, clock.sleep)
     read_pieces = []
     while piece := read(1 << 16):
         read_pieces.append(piece)
@@ -136,7 +135,7 @@ def test_a_late_load_does_not_hurry_the_next_loads() -> None:
         clock.now += 3.0
         return data.pop(0) if data else b""
 
-    read = PacedReader(slow_read, 1, GMR_9300, clock, clock.sleep)
+    read = PacedReader(slow_read, 1, FAMILY, clock, clock.sleep)
     while read(1 << 16):
         pass
     assert clock.slept == []
@@ -147,7 +146,7 @@ def seen_load(number: int) -> bytes:
     return stream(instructions.load_entries(0, [(20 * number, 0, 0)]))
 
 
-def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[Instruction], bool]) -> CutReader:
+def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[int], bool]) -> CutReader:
     """A cut reader of a stream that arrives in pieces."""
     return CutReader(in_pieces(data, cuts), SMALL, is_cut)
 

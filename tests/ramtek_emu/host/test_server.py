@@ -5,6 +5,7 @@ import os
 import selectors
 import socket
 import stat
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -14,15 +15,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
+from ramtek_emu import OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, UnixPort, instructions
 from ramtek_emu.arrays import Words
-from ramtek_emu.host.port import Wire, packet_socket
-from ramtek_emu.host.server import REPLY_BYTES, Client, Gate, HostSession, TcpServer, UnixServer
+from ramtek_emu.host.port import break_off, packet_socket, prepared, write_socket
+from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import smallest_slices
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
-from tests.ramtek_emu.strategies import SMALL, sent_words, sliced_instructions
+from tests.ramtek_emu.strategies import SLICED, SMALL, drawing_instructions, sent_words
 from tests.tables import refused
 
 
@@ -37,12 +38,12 @@ def packet(text: str) -> bytes:
 def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
     with serving() as server, connected(server) as host:
         left = memoryview(np.tile(READ_EVERYTHING, 300_000).astype("<u2").tobytes())
-        wire = Wire(host)
+        prepared(host)
 
         def is_stopped() -> bool:
             """Whether the server reads no more and the host can send no more; it sends until then."""
             nonlocal left
-            sent = wire.send(left)
+            sent = write_socket(host, left)
             left = left[sent:]
             return not sent and server._client is not None and server._client.waiting >= REPLY_BYTES
 
@@ -66,11 +67,11 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
             first.send(READ_EVERYTHING)
             until(server.display.words.any)
             with suppress(PortError):
-                first.wire.socket.setblocking(True)
-                first.wire.socket.sendall(packet(partial) + b"\x01")
+                first.socket.setblocking(True)
+                first.socket.sendall(packet(partial) + b"\x01")
             if rudely:
-                first.wire.break_off()
-            first.wire.socket.close()
+                break_off(first.socket)
+            first.socket.close()
         until(lambda: not server.busy)
         assert server.display.decoder.pending_words == 0
         assert server.display.processor.waiting == 0
@@ -248,7 +249,7 @@ def test_a_reset_within_an_instruction_leaves_it_out_of_the_recording() -> None:
 
 
 @given(
-    st.lists(sliced_instructions() | streams(12).map(sent_words), min_size=1, max_size=4),
+    st.lists(drawing_instructions(SLICED) | streams(12).map(sent_words), min_size=1, max_size=4),
     st.integers(0, 400),
     st.sets(st.integers(0, 40), max_size=4),
 )
@@ -274,23 +275,21 @@ def test_a_recording_with_resets_at_any_pause_gives_the_same_display(
 
 
 @given(words=streams(), counts=st.lists(st.integers(0, 3), max_size=12))
-def test_a_gate_lets_so_many_instructions_through(words: list[int], counts: list[int]) -> None:
-    display, gate = Ramtek9300(SMALL), Gate()
+def test_a_session_lets_so_many_instructions_through(words: list[int], counts: list[int]) -> None:
     recorded = bytearray()
-    session = HostSession(display, recorded.extend, gate)
+    session = HostSession(Ramtek9300(SMALL), recorded.extend)
     # Illegal words in a row are executed at once.
     # A pause within a long instruction repeats the number before.
     steps = sorted({0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16))})
     waiting = session.feed(np.array(words, "<u2").tobytes())
     done = 0
     for count in counts:
-        gate.left = count
-        while next(waiting, None) is not None and not gate.is_closed:
+        session.allowed = count
+        while next(waiting, None) is not None and session.allowed:
             pass
         done = min(done + count, len(steps) - 1)
         assert len(recorded) == 2 * steps[done]
-        assert session.is_stopped == (gate.left == 0)
-    gate.left = None
+    session.allowed = None
     for _ in waiting:
         pass
     assert len(recorded) == 2 * steps[-1]
@@ -305,7 +304,7 @@ def host_and_client(
     record: Callable[[bytes], object] | None = None, idle_seconds: float = 10, partial_seconds: float = 10
 ) -> Iterator[tuple[socket.socket, Client]]:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    client = Client(Wire(there), HostSession(Ramtek9300(), record), idle_seconds, partial_seconds)
+    client = Client(there, HostSession(Ramtek9300(), record), idle_seconds, partial_seconds)
     with host:
         yield host, client
     client.leave()
@@ -395,25 +394,9 @@ def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is
             client.serve(selectors.EVENT_READ)
             while client.work():
                 pass
-        while client.has_to_send:
+        while client.waiting:
             client.serve(selectors.EVENT_WRITE)
         assert [host.recv(100) for _ in range(4)] == [packet("7"), packet("7 0")] * 2
-
-
-def test_a_mark_resets_the_display_and_drops_the_waiting_replies() -> None:
-    recorded: list[bytes] = []
-    drawn, after = DOT + packet("0B03 0040 5 5 5 5 2"), packet("0902 0044 9 6 6 6 6 0B03 0040 6 6 6 6 2")
-    with host_and_client(recorded.append) as (host, client):
-        for sent in (drawn + packet("0A01 0008"), b"", after):
-            host.send(sent)
-        for _ in range(20):
-            client.serve(client.wanted & selectors.EVENT_READ)
-            client.work()
-        assert client.session.display.words[[5, 6], [5, 6]].tolist() == [0, 9]
-        assert b"".join(recorded) == drawn + RESET + after
-        while client.has_to_send:
-            client.serve(selectors.EVENT_WRITE)
-        assert [host.recv(10), host.recv(10)] == [b"", packet("9")]
 
 
 def test_replies_to_a_write_come_in_packets_of_at_most_64_kib(tmp_path: Path) -> None:
@@ -450,7 +433,7 @@ def test_a_port_accepts_the_address_of_a_server_on_ipv6() -> None:
         port.send(words("0902 0044 5 0 0 0 0"))
         while not server.display.words.any():
             server.step(0.1)
-        port.wire.socket.close()
+        port.socket.close()
 
 
 def test_the_socket_is_its_owner_s_alone_and_goes_with_the_server(tmp_path: Path) -> None:
@@ -510,3 +493,42 @@ test_a_path_where_no_socket_can_be_made = refused(
     ],
     OutputError,
 )
+
+
+def test_hosts_that_start_with_the_server_are_all_served(tmp_path: Path) -> None:
+    path, failures = tmp_path / "display", []
+
+    def draw(number: int) -> None:
+        try:
+            with UnixPort(path, timeout=60) as port:
+                port.send(words(f"0902 0044 5 {number:X} 9 {number:X} 9"))
+        except PortError as failure:
+            failures.append(failure)
+
+    hosts = [threading.Thread(target=draw, args=(number,)) for number in range(200)]
+    for host in hosts:
+        host.start()
+    with serving_at(path) as server:
+        for host in hosts:
+            host.join()
+        assert not failures
+        assert (server.display.words[9, :200] == 5).all()
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_name_appears_when_its_socket_listens_and_a_refused_server_leaves_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = os.link
+
+    def observed(hidden: str, path: str) -> None:
+        with packet_socket() as host:
+            host.connect(hidden)
+        # Another server takes the name meanwhile.
+        Path(path).touch()
+        link(hidden, path)
+
+    monkeypatch.setattr(os, "link", observed)
+    with pytest.raises(OutputExistsError):
+        UnixServer(Ramtek9300(), tmp_path / "display")
+    assert os.listdir(tmp_path) == ["display"]

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ramtek_emu import Configuration, Ramtek9300
-from ramtek_emu.host.server import HostSession
 from ramtek_emu.inspection import session as module
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost
@@ -67,7 +66,7 @@ class Served:
 
     def __init__(self, display: Ramtek9300) -> None:
         self.host = RunningHost(display)
-        self.host_session = HostSession(display, self.host.record, self.host.gate)
+        self.host_session = self.host.session
         self.host.step = self.step
         self.inspection = Steps(inspection_of(self.host.replay, self.host))
         self.replies = b""

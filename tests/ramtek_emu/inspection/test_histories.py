@@ -8,14 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from ramtek_emu import PRINCETON_9300, Configuration, EntryFormat, Ramtek9300, instructions
-from ramtek_emu.inspection.histories import (
-    Write,
-    finished,
-    next_change,
-    next_entry_change,
-    writes_to_entry,
-    writes_to_pixel,
-)
+from ramtek_emu.inspection.histories import EntryRange, Write, finished, history_of, next_change
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
@@ -36,7 +29,7 @@ def watched_writes(stream: Stream, line: int, element: int) -> list[Write]:
     for number in range(1, len(stream) + 1):
         twin = copy.deepcopy(display)
         before = int(display.words[line, element])
-        twin.frame_buffer.write(np.array([[before ^ 0x3FF]], np.uint16), element, line)
+        twin.frame_buffer.fill(Window(element, line, element, line), before ^ 0x3FF)
         for each in (display, twin):
             each.send(stream.words_between(number - 1, number))
         after = int(display.words[line, element])
@@ -60,13 +53,13 @@ def test_the_history_of_a_pixel_has_every_write(
         replay = replay_of(words)
         if is_prepared:
             prepare(replay)
-        until = len(replay.stream)
-        writes = finished(writes_to_pixel(replay, line, element, until))
+        until, pixel = len(replay.stream), Window(element, line, element, line)
+        writes = finished(history_of(replay, pixel, until))
         # The operands of an instruction may be read as the opcode of another after words were left out.
         if not READS_WHAT_IT_WRITES.intersection(replay.stream.opcodes.tolist()):
             assert writes == watched_writes(replay.stream, line, element)
         for write in writes:
-            fewer = finished(writes_to_pixel(replay, line, element, write.number))
+            fewer = finished(history_of(replay, pixel, write.number))
             assert fewer == [each for each in writes if each.number <= write.number]
 
 
@@ -75,7 +68,7 @@ def test_a_copy_and_a_fill_write_also_words_that_stay_the_same() -> None:
     replay = replay_of(words)
     names = [replay.stream.item(number).to_plain().get("name") for number in range(1, len(replay.stream) + 1)]
     assert "COPY" in names
-    history = finished(writes_to_pixel(replay, 2, 2, len(names)))
+    history = finished(history_of(replay, Window(2, 2, 2, 2), len(names)))
     assert [(write.before, write.after) for write in history][-1] == (5, 5)
     assert history[-1].number == names.index("COPY") + 1
 
@@ -140,8 +133,8 @@ def test_the_history_of_an_entry(
         places = {(address + offset) % (1024 * per_entry) // per_entry for offset in range(len(data))}
         if device == 0 and entry in places:
             writes.append(Write(2 * index + 1, before, int(display.lookup_table.packed[entry])))
-    last = len(replay.stream)
-    assert finished(writes_to_entry(replay, entry, last)) == writes
+    last, selection = len(replay.stream), EntryRange(entry, entry + 1)
+    assert finished(history_of(replay, selection, last)) == writes
     after = min(after, last)
     changes = [write.number for write in writes if write.number > after and write.before != write.after]
-    assert finished(next_entry_change(replay, entry, entry + 1, after)) == (changes[0] if changes else None)
+    assert finished(next_change(replay, selection, after)) == (changes[0] if changes else None)

@@ -30,7 +30,7 @@ def small_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
     host = RunningHost(Ramtek9300())
     with TcpServer(host.display, idle_seconds=5, record=host.record) as server:
-        server.gate, host.step, host.is_connected = host.gate, server.step, lambda: server.busy
+        host.session, host.step, host.is_connected = server.session, server.step, lambda: server.busy
         session = Steps(inspection_of(host.replay, host))
         session.pause()
         port = TcpPort(server.address)
@@ -59,7 +59,7 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
         while server.step():
             pass
         assert port.receive(4).tolist() == [0, 0, 0, 0]
-        port.wire.socket.close()
+        port.socket.close()
 
 
 def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_them() -> None:
@@ -137,7 +137,7 @@ def test_a_reset_within_a_long_instruction_is_in_the_past(is_paused: bool, has_m
     session = served.inspection
     while not (served.host.display.words == 7).any():
         session.tick()
-    assert served.host.gate.is_within
+    assert served.host_session.is_within
     if is_paused:
         session.pause()
     served.host_session.reset()

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import session as module
-from ramtek_emu.inspection.histories import finished, next_change, writes_to_entry, writes_to_pixel
+from ramtek_emu.inspection.histories import finished, history_of, next_change
 from ramtek_emu.inspection.listing import moved
 from ramtek_emu.inspection.session import EntryRange, inspection_of, memory_window, parameter_texts
 from ramtek_emu.instruction_set.disassembler import items
@@ -77,14 +77,14 @@ def test_the_histories_and_the_next_change_are_those_of_the_stream(
             session.select(Window(element, line, element, line))
             at_rest(session)
             number = session.state.number
-            history = finished(writes_to_pixel(session.replay, line, element, number))
+            history = finished(history_of(session.replay, Window(element, line, element, line), number))
             assert session.state.writes == tuple(reversed(history))
             change = finished(next_change(session.replay, Window(element, line, element, line), number))
             session.next_change()
             assert at_rest(session).state.number == (number if change is None else change)
             session.select(EntryRange(place, place + 1))
             at_rest(session)
-            loads = finished(writes_to_entry(session.replay, place, session.state.number))
+            loads = finished(history_of(session.replay, EntryRange(place, place + 1), session.state.number))
             assert session.state.writes == tuple(reversed(loads))
 
 
@@ -177,7 +177,7 @@ def test_the_words_that_an_instruction_writes_are_noted(words: list[int], number
     at_rest(session)
     number = session.state.number
     for line, element in ((0, 0), (3, 5), (8, 12)):
-        writes = finished(writes_to_pixel(session.replay, line, element, number))
+        writes = finished(history_of(session.replay, Window(element, line, element, line), number))
         is_written = session.state.written is not None and bool(session.state.written[line, element])
         assert is_written == (number in [write.number for write in writes])
 

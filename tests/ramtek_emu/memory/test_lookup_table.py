@@ -5,26 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, Ramtek9300, instructions
+from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, instructions
 from ramtek_emu.memory.lookup_table import LookupTable
-from ramtek_emu.testing import words
-from tests.tables import refused
-
-
-@given(st.integers(0, 0xFFFF), st.integers(0, 40) | st.integers(2040, 2300), st.integers(0, 999))
-def test_a_load_lands_word_by_word_at_the_counter_and_wraps(first: int, count: int, seed: int) -> None:
-    row = np.random.default_rng(seed).integers(0, 1 << 16, count).tolist()
-    table = LookupTable()
-    twin = [0] * 2048
-    for number, word in enumerate(row):
-        address = (first + number) % 2048
-        twin[address] = word & 0xFF if address % 2 else word
-    table.load(first, np.array(row, np.uint16))
-    assert table.read(0, 2048).tolist() == twin
-    assert table.entries.tolist() == [
-        [twin[2 * entry + 1], twin[2 * entry] >> 8, twin[2 * entry] & 0xFF] for entry in range(1024)
-    ]
-
 
 runs = st.tuples(st.integers(0, 2047), st.sampled_from([0, 1, 2, 3, 50, 2048, 2049]))
 
@@ -59,39 +41,14 @@ def test_loading_the_same_entries_repeatedly_counts_as_one_range() -> None:
         table.load(21, np.full(4, number, np.uint16))
         table.load(100, np.zeros(0, np.uint16))
         assert table.entries_written_since(written) == (10, 13)
-    table.write(13, [[1, 2, 3]])
+    table.load(26, np.array([0x0203, 1], np.uint16))
     assert table.entries_written_since(written) is None
     assert table.entries_written_since(table.written - 1) == (13, 14)
 
 
-@given(st.integers(0, 0xFFFF), st.integers(0, 5000))
-def test_a_read_wraps_and_moves_the_counter(first: int, count: int) -> None:
-    table = LookupTable()
-    table.load(0, np.arange(2048, dtype=np.uint16) & np.uint16(0xFF))
-    row = table.read(first, count)
-    assert row.tolist() == [(first + number) % 2048 & 0xFF for number in range(count)]
-    assert table.address == (first + count) % 2048
-
-
-@given(st.integers(0, 0xFFFF), st.lists(words(16), min_size=1, max_size=30))
-def test_twelve_bit_words_come_back_as_they_were_sent(first: int, row: list[int]) -> None:
-    table = LookupTable(PRINCETON_9300)
-    table.load(first, np.array(row, np.uint16))
-    assert table.read(first, len(row)).tolist() == [word & 0xFFF for word in row]
-
-
-def test_full_scale_of_four_bits_is_full_scale_of_eight() -> None:
-    table = LookupTable(PRINCETON_9300)
-    table.load(0, np.array([0x0F08, 0xF000], np.uint16))
-    assert table.entries[:2].tolist() == [[255, 0, 136], [0, 0, 0]]
-
-
-def test_loaded_entries_are_read_back_in_the_same_packing() -> None:
-    display = Ramtek9300()
-    stream = instructions.load_entries(1021, [[1, 2, 3], [250, 251, 252], [0, 255, 0]])
-    display.send(stream)
-    display.send(instructions.read_entries(2042, 6))
-    assert display.receive(6).tolist() == stream[3:].tolist()
+def test_colors_that_do_not_fit_are_not_sent() -> None:
+    with pytest.raises(ColorsError):
+        instructions.load_entries(7, [[0, 256, 0]])
 
 
 def test_the_word_pair_is_green_and_blue_then_red() -> None:
@@ -100,30 +57,9 @@ def test_the_word_pair_is_green_and_blue_then_red() -> None:
 
 def test_entries_are_read_only_and_written_only_grows() -> None:
     table = LookupTable()
-    table.write(3, np.array([[1, 2, 3]]))
+    table.load(6, np.array([0x0203], np.uint16))
     assert table.written == 1
     with pytest.raises(ValueError, match="read-only"):
         table.entries[0, 0] = 1
     with pytest.raises(ValueError, match="read-only"):
         table.packed[0] = 1
-
-
-CHOOSE = "choose an entry of the table"
-NO_COLORS = [
-    ((1024, [[0, 0, 0]]), f"the first entry must be 0 to 1023, not 1024; {CHOOSE}"),
-    ((-1, [[0, 0, 0]]), f"the first entry must be 0 to 1023, not -1; {CHOOSE}"),
-    ((1.0, [[0, 0, 0]]), f"the first entry must be 0 to 1023, not 1.0; {CHOOSE}"),
-    ((1023, [[0, 0, 0]] * 2), "a run of entries must end at 1023, not 1024 (2 from 1023 on); send fewer"),
-    ((7, [[0, 0, 0], [0, 256, 0]]), "a color must be 0 to 255, not 256 (entry 8, green); clip it first"),
-    ((7, [[0, 0, -1]]), "a color must be 0 to 255, not -1 (entry 7, blue); clip it first"),
-    (
-        (0, [[0.0, 0.0, float("nan")]]),
-        "colors must be whole numbers, not float64; convert them first, rounding half up",
-    ),
-    (
-        (0, [0, 0, 0]),
-        "colors must be an (n, 3) array of red, green, blue, not of shape (3,); reshape it",
-    ),
-]
-test_what_is_not_written = refused(lambda given: LookupTable().write(*given), NO_COLORS)
-test_what_is_not_sent = refused(lambda given: instructions.load_entries(*given), NO_COLORS)

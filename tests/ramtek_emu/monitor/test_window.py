@@ -272,7 +272,11 @@ def test_closing_the_window_saves_the_recording(
 
 
 def test_a_recording_that_cannot_be_saved_waits_for_room(
-    monitor: Monitor, messages: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    monitor: Monitor,
+    messages: list[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monitor.screenshots = tmp_path / "later"
     fields = [monitor.display.field()]
@@ -280,7 +284,7 @@ def test_a_recording_that_cannot_be_saved_waits_for_room(
     fields.append(show_load(monitor, 10))
     press(monitor, *QUIT)
     assert monitor.is_open
-    assert messages[0].endswith("; F3 tries again, and closing again drops the film")
+    assert messages[0].endswith("; F3 tries again, and closing again saves the film elsewhere")
     # The film has ended, and the window goes on.
     show_load(monitor, 20)
     press(monitor, pygame.K_F3)
@@ -294,12 +298,40 @@ def test_a_recording_that_cannot_be_saved_waits_for_room(
     assert np.array_equal(decoded(path), fields)
     press(monitor, pygame.K_F3)
     monitor.screenshots = tmp_path / "never"
-    # Closing says once that the film will be lost, also if F3 could not save it before.
+    # Closing says once that the film goes elsewhere, also if F3 could not save it before.
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "full"))
+    monkeypatch.setattr(Path, "home", lambda: elsewhere)
     for is_open in (True, True, False):
         press(monitor, *((pygame.K_F3,) if len(messages) == 3 else QUIT))
         assert monitor.is_open == is_open
-    assert messages[4].endswith("closing again drops the film")
-    assert capsys.readouterr().err.endswith("; the film is lost\n")
+    assert messages[4].endswith("closing again saves the film elsewhere")
+    path = elsewhere / "ramtek-0001.apng"
+    assert capsys.readouterr().err.endswith(f"saved {path.resolve()}, 1 field\n")
+    assert np.array_equal(decoded(path), [monitor.display.field()])
+    # Without any folder, the film is lost.
+    monitor.screenshots = monitor.screenshots / "never"
+    elsewhere.rename(tmp_path / "gone")
+    monitor.open()
+    press(monitor, pygame.K_F3)
+    monitor.close()
+    assert capsys.readouterr().err.endswith("the film is lost: no folder could take it\n")
+
+
+def test_f2_shows_the_words_through_tables_of_grays(monitor: Monitor, messages: list[str]) -> None:
+    own = monitor.display.field()
+    seen = []
+    for _ in range(3):
+        press(monitor, pygame.K_F2)
+        settle(monitor)
+        seen.append(monitor.display.scan_out.shown_table)
+        assert np.array_equal(monitor.display.field(), own) == (not seen[-1])
+    assert seen == ["gray", "gray8", ""]
+    assert messages == ["the table gray", "the table gray8", "the display's table"]
+    monitor.on_key = lambda _: False
+    press(monitor, pygame.K_F2)
+    assert monitor.display.scan_out.shown_table == ""
 
 
 def test_the_mouse_and_dropped_files_are_reported_in_elements_and_lines(monitor: Monitor) -> None:

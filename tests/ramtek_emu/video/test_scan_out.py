@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import (
+    FAMILY,
     GMR_9300,
     JPL_9460,
     NCAR_9460,
@@ -23,8 +24,7 @@ from ramtek_emu import (
 )
 from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursors, cross
 from ramtek_emu.testing import rasters, streams, words
-from ramtek_emu.video.scan_out import Mark, draw, lines_with, marks
-from tests.ramtek_emu import reference
+from ramtek_emu.video.scan_out import Mark, draw, gray_table, lines_with, marks
 from tests.ramtek_emu.displays import colored
 from tests.ramtek_emu.strategies import SMALL, cuts, sent_words
 
@@ -36,7 +36,7 @@ def test_the_field_is_each_word_s_entry(raster: NDArray[np.uint16], seed: int) -
     display.send(instructions.write_image(raster))
     display.send(instructions.load_entries(0, colors))
     entries = [(int(red), int(green), int(blue)) for red, green, blue in colors]
-    twin = np.array(reference.field(raster.tolist(), entries))
+    twin = np.array([[entries[word] for word in line] for line in raster.tolist()])
     assert (display.field() == twin).all()
     pixels = np.zeros((9, 13), np.uint32)
     display.scan_out.scan_out_into(pixels)
@@ -119,7 +119,9 @@ def do(display: Ramtek9300, name: str, value: Any) -> None:
             display.send(np.array([0x0300, address & 0x7FF, 2 * count, *data], np.uint16))
         else:
             first = max(0, address // 2)
-            display.lookup_table.write(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+            display.send(
+                instructions.load_entries(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+            )
     elif name == "write words":
         (line, element), word = value
         word &= display.configuration.largest_word
@@ -285,7 +287,7 @@ def test_a_cursor_is_dark_on_a_light_picture_and_clipped_at_the_edges() -> None:
     assert np.count_nonzero(display.field()[..., 0] == 0) == 12
 
 
-TIMED = replace(GMR_9300, timing=Timing())
+TIMED = replace(FAMILY, timing=Timing())
 
 
 def colors(display: Ramtek9300) -> list[int]:
@@ -381,3 +383,40 @@ def test_the_lines_that_show_a_run_of_entries_are_found(seed: int, first: int, c
         top, bottom = lines_with(raster, first, end)
     showing = [line for line, words in enumerate(raster.tolist()) if any(first <= w < end for w in words)]
     assert (top, bottom) == ((showing[0], showing[-1] + 1) if showing else (0, 0))
+
+
+@pytest.mark.parametrize("timing", [None, Timing()])
+def test_a_table_of_grays_shows_words_whose_entries_are_black(timing: Timing | None) -> None:
+    display = Ramtek9300(replace(GMR_9300, timing=timing))
+    assert not display.scan_out.is_dark
+    display.send(instructions.write_image(np.arange(1024, dtype=np.uint16).reshape(32, 32)))
+    assert display.scan_out.is_dark
+    stamps = set()
+    for name, some in (("gray", {1: 64, 512: 160, 1023: 255}), ("gray8", {255: 255, 256: 0, 513: 1})):
+        display.scan_out.shown_table = name
+        stamps.add(display.scan_out.stamp)
+        assert not display.scan_out.is_dark
+        words = display.field()[:32, :32].reshape(-1, 3)
+        assert not words[0].any()
+        assert all(words[word].tolist() == [gray] * 3 for word, gray in some.items())
+    # The beam paints the monitor image in the colors of the display.
+    display.send(instructions.erase())
+    display.scan_out.follow_beam()
+    assert not display.scan_out.state()["monitor_image"].any()
+    display.scan_out.shown_table = ""
+    assert len({*stamps, display.scan_out.stamp}) == 3
+    assert not display.field().any()
+
+
+def test_a_picture_with_a_lit_pixel_is_not_dark() -> None:
+    display = Ramtek9300()
+    display.send(instructions.write_image(np.array([[1, 2]], np.uint16)))
+    display.send(instructions.load_entries(3, [[255, 255, 255]]))
+    assert display.scan_out.is_dark
+    display.send(instructions.load_entries(2, [[0, 0, 1]]))
+    assert not display.scan_out.is_dark
+
+
+def test_the_only_word_of_a_plane_is_white() -> None:
+    assert gray_table("gray", 2).tolist() == [0, 0xFFFFFF]
+    assert gray_table("gray", 1024)[[1, 2, 1023]].tolist() == [0x404040, 0x404040, 0xFFFFFF]

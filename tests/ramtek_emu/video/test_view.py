@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import GMR_9300, Ramtek9300, Timing, instructions
+from ramtek_emu import FAMILY, Ramtek9300, Timing, instructions
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.video.beam import Beam
@@ -90,7 +90,7 @@ def test_after_reset_the_screen_shows_the_memory_as_it_lies() -> None:
     assert [shown_at(place, 0, 1, 13) for place in range(13)] == list(range(13))
 
 
-TIMED = replace(GMR_9300, timing=Timing())
+TIMED = replace(FAMILY, timing=Timing())
 
 
 def test_cursors_blink_with_the_fields() -> None:
