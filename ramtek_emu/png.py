@@ -31,7 +31,7 @@ def chunk(kind: bytes, content: bytes) -> bytes:
 def chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
     """Yields the kinds and contents of the chunks of a PNG file; ValueError at a broken place."""
     if data[:8] != SIGNATURE:
-        raise ValueError("a PNG file must begin as a PNG file does, not as something else")
+        raise ValueError("a PNG file must begin with its signature, not with other bytes")
     place = 8
     while place < len(data):
         length, kind = unpack_from(">I4s", data, place) if len(data) - place >= 12 else (0, b"")

@@ -149,7 +149,8 @@ def configuration_of(plain: dict[str, Any]) -> Configuration:
     if not isinstance(name, str) or not (1 <= len(name) <= 60 and name.isascii() and name.isprintable()):
         raise value_refusal("configuration.name", "a name", name)
     try:
-        entry_format: Any = EntryFormat.__members__.get(plain["entry_format"])
+        written: Any = plain["entry_format"]
+        entry_format = EntryFormat.__members__.get(written, written)
         kinds = {"entry_format": entry_format, "timing": timing and Timing(**timing)}
         return Configuration(**plain | kinds)
     except (KeyError, TypeError):

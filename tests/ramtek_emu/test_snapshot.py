@@ -194,7 +194,7 @@ def test_mutated_snapshots_are_read_or_refused(count: int) -> None:
             "configuration",
             '"elements":13',
             '"elements":99999999',
-            "a configuration that can be built: elements must be",
+            "a configuration that can be built: elements of SMALL must be",
         ),
         (
             "configuration",
@@ -202,7 +202,7 @@ def test_mutated_snapshots_are_read_or_refused(count: int) -> None:
             '"planes":1',
             "a word of a snapshot must be a whole number from 0 to 1, not ",
         ),
-        ("configuration", '"PAIR_24"', '"PAIR_99"', "entry_format must be an EntryFormat"),
+        ("configuration", '"PAIR_24"', '"PAIR_99"', "entry_format of a display must be EntryFormat"),
         ("configuration", '"name":"SMALL"', f'"name":"{60 * "a"}"', ""),
         ("configuration", '"name":"SMALL"', f'"name":"{61 * "a"}"', "name of a snapshot must be a name"),
         ("configuration", '"name":"SMALL"', '"name":"\\n"', "name of a snapshot must be a name"),
@@ -284,8 +284,8 @@ TIME = chunk(b"tIME", b"")
 @pytest.mark.parametrize(
     ("data", "part"),
     [
-        (b"", "begin as a PNG file does"),
-        (b"GIF89a", "begin as a PNG file does"),
+        (b"", "begin with its signature"),
+        (b"GIF89a", "begin with its signature"),
         (SNAPSHOT[:-5], "whole chunks"),
         (SNAPSHOT[:40], "whole chunks"),
         (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksums"),

@@ -27,8 +27,8 @@ from autocolor.files.settings import scene_with
 from autocolor.images import send_picture
 from autocolor.rendering import ALGORITHMS
 from autocolor.scene.columns import Tier
-from ramtek_emu import GMR_9300, Ramtek9300
-from ramtek_emu.host.pipe import PacedReader
+from ramtek_emu import Ramtek9300
+from ramtek_emu.instruction_set.decoder import Decoder
 from tests.ramtek_emu.film_reader import decoded
 from tests.small import cube, wall_scene
 
@@ -130,10 +130,9 @@ def test_any_executor_gives_the_same_film(tmp_path: Path) -> None:
 def played(path: Path) -> Iterator[Bytes]:
     """The fields of a display after each load of its table by a stream."""
     display = Ramtek9300()
-    with path.open("rb") as file:
-        reader = PacedReader(file.read, 1, GMR_9300, clock=lambda: 0.0, sleep=lambda _: None)
-        while data := reader(1 << 20):
-            display.send(np.frombuffer(data, "<u2"))
+    for words in Decoder().split(np.fromfile(path, "<u2").astype(np.uint16)):
+        display.send(words)
+        if words[0] == 0x0300:
             yield display.field()
 
 

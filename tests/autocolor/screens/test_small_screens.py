@@ -253,12 +253,12 @@ def test_a_failed_computation_is_not_cached() -> None:
 
 PAGES = {
     "picture": 473489948,
-    "light and view": 3442920221,
-    "lights": 2635481227,
+    "light and view": 1944307095,
+    "lights": 4282269980,
     "reflectance": 571573069,
     "mixing": 1_328_086_564,
     "blending": 4232246749,
-    "mapping": 2498891683,
+    "mapping": 4148987329,
     "scalar": 648425415,
     "variants": 378967624,
     "history": 158829111,

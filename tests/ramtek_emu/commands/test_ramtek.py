@@ -76,7 +76,7 @@ REFUSED = (
     ("serve --stdio -o a.jpg", 73, "ramtek: "),
     ("inspect empty -o a.jpg", 73, "ramtek: "),
     ("-o a.jpg", 73, "ramtek: "),
-    ("serve --stdio --start empty", 65, "ramtek: a snapshot must"),
+    ("serve --stdio --start empty", 65, "ramtek: a PNG file must"),
     ("serve --stdio --joystick -", 2, "Error: stdin must be for words or for the joystick, not both; give"),
     ("serve --stdio --joystick none", 66, "ramtek: a joystick's lines must"),
     ("serve --port 0 --joystick .", 66, "ramtek: a joystick's lines must"),
