@@ -94,9 +94,10 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
         down = stage.height + GAP
         boxes["parameters"] = PageBox(GAP, down, stage.width - GAP, rows * ROW)
         boxes["cursors"] = PageBox(GAP, down + rows * ROW, stage.width - GAP, cursors * ROW)
-    for name, rows in (panels_at_right | {"pixels": 3, "history": 0}).items():
-        boxes[name] = PageBox(right, top, side, (rows or (bottom - top) // ROW) * ROW)
+    for name, rows in (panels_at_right | {"pixels": 3}).items():
+        boxes[name] = PageBox(right, top, side, rows * ROW)
         top += rows * ROW + (0 if name == "parameters" else GAP)
+    boxes["history"] = PageBox(right, top, side, (bottom - top) // ROW * ROW)
     places, left = [], GAP
     for label in buttons:
         places.append(PageBox(left, bottom + 4, (len(label) + 2) * ADVANCE, BUTTON_LINES))
