@@ -78,7 +78,7 @@ def next_change(replay: Replay, selection: Selection, after: int) -> Search[int 
 
 def last_change(replay: Replay, selection: Selection, before: int) -> Search[int | None]:
     """The last instruction before `before` that changes a word or color of a selection, or None."""
-    parts = [(0, before - 1)]
+    parts = [(0, max(0, before - 1))]
     if isinstance(selection, Window):
         parts = [(begin, end) for begin, end, _ in replay.stretches(selection, 0, before - 1)]
     for begin, end in reversed(parts):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator
+from itertools import pairwise
 from operator import attrgetter
 from time import perf_counter, thread_time
 from typing import Final
@@ -155,7 +156,9 @@ class Replay:
 
         Yields the number before each part, its last number, and whether it may write to a window.
         """
-        for state, following in zip(self._states, [*self._states[1:], None], strict=True):
+        # A running host adds states meanwhile.
+        for state, following in pairwise([*self._states, None]):
+            assert state is not None
             begin = max(state.number, after)
             end = until if following is None else min(following.number, until)
             if end > begin:

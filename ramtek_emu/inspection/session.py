@@ -194,7 +194,7 @@ def _first_listed(session: Inspection, number: int) -> int:
     return min(moved(stream, number, -(rows // 3)), moved(stream, len(stream), 1 - rows))
 
 
-# PendingSearch in pieces.
+# Work in pieces.
 
 
 def tick(session: Inspection) -> Inspection:

@@ -332,7 +332,9 @@ def test_a_stopped_display_executes_what_it_is_let_and_all_of_it_in_the_end(
             number = session.state.number
             if number == session.state.length == len(session.replay.stream):
                 assert session.display is served.host.display
-            if not session.state.is_following:
+            # A row of illegal words that goes on in the next piece is not whole.
+            is_in_row = number > 0 and session.replay.stream.item(number).instruction is None
+            if not session.state.is_following and not is_in_row:
                 assert snapshot_of_whole(session) == expected[number][0]
         session.go_on()
         served.execute()
