@@ -201,14 +201,11 @@ class Ramtek9300:
         return png_bytes(self.field())
 
 
-def execute(processor: Processor, instruction: Instruction) -> None:
-    """Set the operands of an instruction, then execute it; no instruction raises an error."""
-    for _ in execute_in_slices(processor, instruction) or ():
-        pass
-
-
 def execute_in_slices(processor: Processor, instruction: Instruction) -> Pauses | None:
-    """Begin an instruction as `execute` does; returns the pauses of a long one, None if it is complete."""
+    """Set the operands of an instruction and begin it; no instruction raises an error.
+
+    Returns the pauses of a long instruction, None if the instruction is complete.
+    """
     format = instruction.format
     if format.is_normal and instruction.operands and not format.requests_operands:
         processor.parameters.take(instruction.operands, instruction.low_byte)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from struct import Struct
 from typing import Final
 
 import numpy as np
@@ -271,6 +272,8 @@ def read_cursor(number: int) -> Words:
     return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | checked_number(number, *CURSOR)], np.uint16)
 
 
+LOW_BYTE_FIRST: Final = np.dtype("<u2")
+THREE_WORDS: Final = Struct("<3H")
 LOAD: Final = FORMAT_OF_NAME["LAM"].opcode << 8
 """The instruction word of LAM for table 0."""
 
@@ -280,11 +283,18 @@ def load_entries(first: int, colors: object, entries: int = 1024, short: bool = 
 
     With `short=True` it is the 12-bit format, which has the upper four bits of each component.
     """
-    red, green, blue = checked_colors(first, colors, entries).astype(np.uint16).T
-    pairs = np.stack((green << 8 | blue, red), axis=1).reshape(-1)
-    data = red >> 4 << 8 | green & 0xF0 | blue >> 4 if short else pairs
-    address = int(first) if short else 2 * int(first)
-    return np.concatenate((np.array((LOAD, address, 2 * len(data)), np.uint16), data))
+    checked = checked_colors(first, colors, entries)
+    if short:
+        red, green, blue = checked.astype(np.uint16).T >> 4
+        head = np.array((LOAD, int(first), 2 * len(checked)), np.uint16)
+        return np.concatenate((head, red << 8 | green << 4 | blue))
+    # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0. Measured: bytes take
+    # a third to half of the time of arrays, and each step of a dragged color is a load.
+    data = checked.tobytes()
+    memory = bytearray(6 + 4 * len(checked))
+    memory[6::4], memory[7::4], memory[8::4] = data[2::3], data[1::3], data[0::3]
+    memory[:6] = THREE_WORDS.pack(LOAD, 2 * int(first), 4 * len(checked))
+    return np.frombuffer(memory, LOW_BYTE_FIRST)
 
 
 def park_table(address: int = 0) -> Words:

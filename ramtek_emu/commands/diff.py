@@ -54,7 +54,7 @@ def diff(
         for stream in streams
     ]
     if as_json:
-        instructions = [None if item is None else item.to_plain(with_words=False) for item in listed]
+        instructions = [None if item is None else item.to_plain() for item in listed]
         plain = {} if found is None else {"number": found.number, "instructions": instructions} | found.where
         click.echo(json.dumps(plain or None))
     elif found is None:

@@ -74,21 +74,18 @@ def display_asked_for(
 
     It is shown through the table of grays `table`, None for its own.
     """
-    display = _display_asked_for(configuration, start)
-    display.scan_out.shown_table = table or ""
-    return display
+    if start is None:
+        from ramtek_emu.display import Ramtek9300
 
-
-def _display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
-    if start is not None:
-        if configuration is not None:
-            raise click.UsageError("a display must be given by --configuration or --start; leave one out")
+        display = Ramtek9300(GMR_9300 if configuration is None else configuration)
+    elif configuration is not None:
+        raise click.UsageError("a display must be given by --configuration or --start; leave one out")
+    else:
         from ramtek_emu.snapshot import read_snapshot
 
-        return read_snapshot(start)
-    from ramtek_emu.display import Ramtek9300
-
-    return Ramtek9300(GMR_9300 if configuration is None else configuration)
+        display = read_snapshot(start)
+    display.scan_out.shown_table = table or ""
+    return display
 
 
 def refuse_outputs(force: bool, *paths: str | None, pictures: Sequence[str | None] = ()) -> None:
@@ -147,9 +144,8 @@ class Run:
         """The exit code of the first failure; 0 if there was none."""
         self.record: Record | None = None
         """Records words; None if no recording was asked for."""
-
-        self.hints: dict[str, str] = {}
-        """The hints that were printed, by their subject."""
+        self.hints: set[str] = set()
+        """The subjects of the hints that were printed."""
 
     def hint(self, display: Ramtek9300) -> str:
         """Print a hint, once, about words that are all black, and about an instruction that is missing.
@@ -161,7 +157,7 @@ class Run:
             hints["dark"] = "words were drawn, and nothing is lit: --table gray shows them (F2 in a window)"
         if "foreign" not in self.hints and foreign is not None:
             hints["foreign"] = f"{foreign} is no instruction of a 9300; --configuration family has it"
-        self.hints |= hints
+        self.hints |= hints.keys()
         for hint in hints.values():
             tell(hint)
         return "; ".join(hints.values())

@@ -193,7 +193,7 @@ def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until
 def plain_write(replay: Replay, write: Write) -> dict[str, Any]:
     """A write in plain values, with its instruction as `ramtek list --json` writes it."""
     return {"number": write.number, "before": write.before, "after": write.after} | {
-        "instruction": replay.stream.item(write.number).to_plain(with_words=False)
+        "instruction": replay.stream.item(write.number).to_plain()
     }
 
 
@@ -201,7 +201,7 @@ def plain_moment(replay: Replay) -> dict[str, Any]:
     """An instruction, its reply and the small parts of the display after it, in plain values."""
     from ramtek_emu.inspection.differences import plain_values
 
-    instruction = replay.stream.item(replay.number).to_plain(with_words=False) if replay.number else None
+    instruction = replay.stream.item(replay.number).to_plain() if replay.number else None
     reply = [] if replay.reply is None else replay.reply.tolist()
     return {"number": replay.number, "of": len(replay.stream), "instruction": instruction, "reply": reply} | (
         plain_values(replay.display)

@@ -47,7 +47,7 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
     separator = "["
     for item in listed:
         # A row of illegal words may be as long as the file.
-        click.echo(f'{separator}{json.dumps(item.to_plain(with_words=False))[:-1]}, "words": [', nl=False)
+        click.echo(f'{separator}{json.dumps(item.to_plain())[:-1]}, "words": [', nl=False)
         for first in range(0, len(item.words), PIECE):
             comma = ", " if first else ""
             click.echo(comma + json.dumps(item.words[first : first + PIECE].tolist())[1:-1], nl=False)

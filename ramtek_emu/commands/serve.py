@@ -40,7 +40,7 @@ Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
   ramtek serve --port 9300 --inspect                stop its host, step, ask who wrote a pixel
-  ramtek serve --unix /tmp/display                  one for programs that open a device
+  ramtek serve --unix /tmp/display                  a display for programs that open a device
   ramtek serve --port 9300 --joystick -             type `cursor 100 200 enter` to point at something
   old_program | ramtek serve --stdio -o out.png     a program that only draws
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
@@ -124,14 +124,13 @@ def serve(
 
             inspected = RunningHost(display, run.record)
         recording = run.record if inspected is None else inspected.record
-        session = HostSession(display, recording)
         server: Server | None = None
         if unix is not None:
             server = UnixServer(display, unix, idle_seconds=idle, record=recording)
         elif port is not None:
             server = TcpServer(display, port, host, idle_seconds=idle, record=recording)
         with server or nullcontext():
-            session = session if server is None else server.session
+            session = HostSession(display, recording) if server is None else server.session
             if inspected is not None:
                 inspected.session = session
             obey: Obey | None = None

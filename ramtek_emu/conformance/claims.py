@@ -11,7 +11,6 @@ docs/CONFORMANCE.md describes the keys. Data are edited by hand; no program writ
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -19,9 +18,10 @@ from typing import Any, Final
 import numpy as np
 
 from ramtek_emu.arrays import Words
+from ramtek_emu.instruction_set.disassembler import runs
 
 JOYSTICK: Final = "joystick "
-"""What a write begins with that is no words, but a line for the joystick unit."""
+"""The prefix of a write that is a line for the joystick unit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +36,7 @@ class Claim:
     writes: tuple[str, ...]
     """The host's writes: words in hexadecimal, or a line for the joystick unit."""
     of: str
-    """What `ask` reads back, for people: a window, entries, an operating point."""
+    """A description of the data that `ask` reads: a window, entries, an operating point."""
     ask: str
     replies: str
     """All words that the display replies, to the writes and to `ask`."""
@@ -85,17 +85,6 @@ def words_of(text: str) -> Words:
     return np.repeat(values, [int(times or 1) for _, _, times in parts])
 
 
-def text_of(words: Iterable[int]) -> str:
+def text_of(words: Words) -> str:
     """The text of words, in which a word that repeats three times or more is written once."""
-    return " ".join(_parts(list(words)))
-
-
-def _parts(words: list[int]) -> Iterator[str]:
-    place = 0
-    while place < len(words):
-        end = place
-        while end < len(words) and words[end] == words[place]:
-            end += 1
-        word = f"{words[place]:04X}"
-        yield from [word] * (end - place) if end - place < 3 else [f"{word}*{end - place}"]
-        place = end
+    return " ".join(text for _, text in runs(words))

@@ -87,7 +87,7 @@ def failure_of_the_text(claim: Claim) -> str:
     for lines in filter(None, (listing, program)):
         assembled = np.frombuffer(b"".join(assemble(lines)), "<u2")
         if not np.array_equal(assembled, words):
-            return f"the text assembles to {text_of(assembled.tolist())}"
+            return f"the text assembles to {text_of(assembled)}"
     for wrong in claim.in_process.get("refused", ()):
         with suppress(ListingError):
             list(assemble(wrong.split("|")))
@@ -113,11 +113,10 @@ def failure_on(claim: Claim, command: Sequence[str], seconds: float) -> str:
         ) as process:
             assert process.stdin is not None
             try:
-                for write in writes[:-1]:
-                    process.stdin.write(write)
+                with suppress(BrokenPipeError):
+                    for write in writes[:-1]:
+                        process.stdin.write(write)
                 given, _ = process.communicate(writes[-1], timeout=seconds)
-            except BrokenPipeError:
-                given, _ = process.communicate()
             except subprocess.TimeoutExpired:
                 process.kill()
                 return f"the emulator did not end in {seconds:g} s"
@@ -134,7 +133,7 @@ def difference(claim: Claim, given: Words) -> str:
         return ""
     alike = np.flatnonzero(expected[: len(given)] != given[: len(expected)])
     place = int(alike[0]) if len(alike) else min(len(expected), len(given))
-    texts = [_shortened(text_of(words[place:].tolist())) for words in (expected, given)]
+    texts = [_shortened(text_of(words[place:])) for words in (expected, given)]
     return f"from reply word {place} on, expected {texts[0] or 'nothing'}, given {texts[1] or 'nothing'}"
 
 

@@ -335,8 +335,8 @@ class UnixPort(SocketPort):
             raise PortError(
                 f"a write must be at most {self.at_once} bytes, not {len(data)}; divide it at an even place"
             )
-        while data and not self._send_some(data):
-            pass
+        if data:
+            self._send_some(data)
 
 
 def packet_socket() -> socket.socket:

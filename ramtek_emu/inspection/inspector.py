@@ -14,16 +14,17 @@ from typing import Final, NamedTuple
 
 from ramtek_emu.errors import RamtekError
 from ramtek_emu.inspection import session as sessions
+from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.page import InspectorPage, layout_of
 from ramtek_emu.inspection.panels import PAUSE
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import EntryRange, Inspection, display_of, inspection_of
+from ramtek_emu.inspection.session import Inspection, display_of, inspection_of
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.overlay import KEYS
 from ramtek_emu.monitor.window import LEFT, RIGHT, TICK_MILLISECONDS, Key, Monitor, Pointer
 from ramtek_emu.snapshot import snapshot_bytes
-from ramtek_emu.video.scan_out import next_table
+from ramtek_emu.video.scan_out import turned
 from ramtek_emu.writing import PNG, write_numbered
 
 WHEEL_ROWS: Final = 3
@@ -89,7 +90,7 @@ class Inspector:
     def press(self, key: Key) -> bool:
         """Handle a key; returns whether it means something here."""
         session = self.session
-        if key.name in ("f3", "f12"):
+        if key.name == "f12":
             return False
         if key.name in ("return", "enter"):
             self._do(sessions.enter, key.shift)
@@ -204,11 +205,11 @@ def point_at(session: Inspection, place: Point | None = None, entry: int | None 
 
 def turn_table(session: Inspection) -> Inspection:
     """Show the words through the next table of grays, or again through the table of the display."""
-    name = next_table(display_of(session).scan_out.shown_table)
-    displays = [session.replay.display, *([session.host.display] if session.host is not None else ())]
-    for display in displays:
-        display.scan_out.shown_table = name
-    return sessions.tell(session, f"the table {name}" if name else "the display's table")
+    shown = display_of(session).scan_out
+    message = turned(shown)
+    for display in (session.replay.display, *([session.host.display] if session.host is not None else ())):
+        display.scan_out.shown_table = shown.shown_table
+    return sessions.tell(session, message)
 
 
 def save_snapshot(session: Inspection) -> Inspection:

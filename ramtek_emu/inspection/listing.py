@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -23,7 +22,6 @@ POLLS: Final = frozenset(format.opcode for format in FORMATS if format.meaning.s
 """The opcodes of instructions that read."""
 
 
-@lru_cache(4096)
 def meaning_of(stream: Stream, number: int) -> str:
     """The right side of an instruction's listing in one line, cut after LONGEST_MEANING characters."""
     item = stream.item(number)

@@ -17,7 +17,8 @@ import numpy as np
 
 from ramtek_emu.arrays import Colors, Dots, PackedColors
 from ramtek_emu.inspection import panels
-from ramtek_emu.inspection.session import EntryRange, Inspection, display_of, shown_pixels
+from ramtek_emu.inspection.histories import EntryRange
+from ramtek_emu.inspection.session import Inspection, display_of, shown_pixels
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import (
     ADVANCE,

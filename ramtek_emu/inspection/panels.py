@@ -10,10 +10,9 @@ from typing import Final
 
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection.histories import Write
+from ramtek_emu.inspection.histories import EntryRange, Write
 from ramtek_emu.inspection.listing import meaning_of, rows_from
 from ramtek_emu.inspection.session import (
-    EntryRange,
     Inspection,
     display_of,
     parameter_texts,

@@ -19,8 +19,7 @@ import numpy as np
 from ramtek_emu.arrays import Dots
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection import histories
-from ramtek_emu.inspection.histories import EntryRange as EntryRange
-from ramtek_emu.inspection.histories import Search, Selection, Write
+from ramtek_emu.inspection.histories import EntryRange, Search, Selection, Write
 from ramtek_emu.inspection.listing import meaning_of, moved, next_with, pattern_of, rows_from
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
@@ -225,7 +224,6 @@ def _served(session: Inspection, host: RunningHost) -> Inspection:
                 break
             is_reached = session.awaited()
     if host.replay is not session.replay:
-        meaning_of.cache_clear()
         message = f"the instructions took {MOST_BYTES >> 20} MB of memory: they are counted from here on"
         session = replace(select(session, None), replay=host.replay, written=None, message=message)
         session = replace(session, length=0, number=0, target=0, prepared=0, first_listed=0)

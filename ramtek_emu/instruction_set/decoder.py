@@ -182,7 +182,7 @@ def end_of_row(words: Words, place: int, extended: bool) -> int:
 
 
 def instruction_of(words: Words, extended: bool) -> Instruction:
-    """The instruction whose words, all of them, these are."""
+    """The instruction that these words, which must be whole, encode."""
     format = formats_of_words(extended)[words.item(0)]
     if format is ILLEGAL:
         return Instruction(ILLEGAL, 0, {}, None, words)

@@ -80,11 +80,9 @@ class ListingItem:
             yield _line(place, words, text)
             place += len(words)
 
-    def to_plain(self, with_words: bool = True) -> dict[str, Any]:
+    def to_plain(self) -> dict[str, Any]:
         """The item in plain values, for JSON."""
         item: dict[str, Any] = {"place": self.place}
-        if with_words:
-            item["words"] = self.words.tolist()
         if self.instruction is None:
             item["note"] = self.note
             if self.odd_byte:

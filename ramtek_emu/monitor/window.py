@@ -35,7 +35,7 @@ from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Release
 from ramtek_emu.monitor.input_queue import Key as Key
 from ramtek_emu.monitor.input_queue import Pointer as Pointer
 from ramtek_emu.monitor.overlay import PAGES, Overlay
-from ramtek_emu.video.scan_out import next_table
+from ramtek_emu.video.scan_out import turned
 
 if TYPE_CHECKING:
     from ramtek_emu.films import TimedFilm
@@ -242,9 +242,7 @@ class Monitor:
 
     def turn_table(self) -> None:
         """Show the words through the next table of grays, or again through the table of the display."""
-        scan_out = self._display.scan_out
-        scan_out.shown_table = next_table(scan_out.shown_table)
-        self.tell(f"the table {scan_out.shown_table}" if scan_out.shown_table else "the display's table")
+        self.tell(turned(self._display.scan_out))
 
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""

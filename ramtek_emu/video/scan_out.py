@@ -82,11 +82,6 @@ def gray_table(name: str, words: int) -> PackedColors:
     return levels.astype(np.uint32) * np.uint32(0x010101)
 
 
-def next_table(name: str) -> str:
-    """The table after a table: "gray", "gray8", and "" for the display's own."""
-    return dict(zip(("", *TABLES), (*TABLES, ""), strict=True))[name]
-
-
 class ScanOut:
     """Makes fields from a frame buffer, a lookup table and cursors."""
 
@@ -291,6 +286,13 @@ class ScanOut:
     def first_entry(self) -> int:
         """The first entry of the section of the table that is shown."""
         return self._lookup_table.addressed_entry // self._words * self._words if self._has_sections else 0
+
+
+def turned(scan_out: ScanOut) -> str:
+    """Show words through "gray", then "gray8", then the display's own table; returns a message for people."""
+    following = {"": "gray", "gray": "gray8", "gray8": ""}
+    scan_out.shown_table = name = following[scan_out.shown_table]
+    return f"the table {name}" if name else "the display's table"
 
 
 def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:

@@ -10,10 +10,11 @@ import pygame
 import pytest
 
 from ramtek_emu import Configuration, Ramtek9300, instructions
+from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.inspector import BINDINGS, MOUSE, MOUSE_LIVE, Inspector
 from ramtek_emu.inspection.page import EDGE
 from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import EntryRange, inspection_of, is_busy, tick
+from ramtek_emu.inspection.session import inspection_of, is_busy, tick
 from ramtek_emu.monitor.input_queue import Key, Pointer
 from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.inspection.replays import replay_of

@@ -15,10 +15,11 @@ from hypothesis import strategies as st
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.inspection import panels
+from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.page import EDGE, InspectorPage, PageLayout, layout_of
 from ramtek_emu.inspection.panels import PAUSE
 from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import EntryRange, inspection_of, selection_text, tell, turn_to
+from ramtek_emu.inspection.session import inspection_of, selection_text, tell, turn_to
 from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import ADVANCE, BLACK, WHITE, PageBox

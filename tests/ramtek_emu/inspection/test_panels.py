@@ -6,9 +6,9 @@ import numpy as np
 
 from ramtek_emu import instructions
 from ramtek_emu.inspection import panels
+from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.listing import LONGEST_MEANING, meaning_of
 from ramtek_emu.inspection.panels import wrapped
-from ramtek_emu.inspection.session import EntryRange
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import GRAY, ORANGE, WHITE, Span
 from tests.ramtek_emu.inspection.sessions import Served, at_rest, session_of, text_of

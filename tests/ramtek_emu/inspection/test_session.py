@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import session as module
-from ramtek_emu.inspection.histories import finished, history_of, next_change
+from ramtek_emu.inspection.histories import EntryRange, finished, history_of, next_change
 from ramtek_emu.inspection.listing import moved
-from ramtek_emu.inspection.session import EntryRange, inspection_of, memory_window, parameter_texts
+from ramtek_emu.inspection.session import inspection_of, memory_window, parameter_texts
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.memory.scan_orders import Point, Window

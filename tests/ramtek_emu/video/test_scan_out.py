@@ -401,7 +401,8 @@ def test_a_table_of_grays_shows_words_whose_entries_are_black(timing: Timing | N
         assert all(words[word].tolist() == [gray] * 3 for word, gray in some.items())
     # The beam paints the monitor image in the colors of the display.
     display.send(instructions.erase())
-    display.scan_out.follow_beam()
+    for _ in display.scan_out.follow_beam():
+        pass
     assert not display.scan_out.state()["monitor_image"].any()
     display.scan_out.shown_table = ""
     assert len({*stamps, display.scan_out.stamp}) == 3
