@@ -38,7 +38,7 @@ from autocolor.errors import AutocolorError, UsageError, warn_of_edit
 from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image, save_image
-from autocolor.journal.history import History, is_picture
+from autocolor.journal.history import Edit, History, is_picture
 from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
@@ -313,12 +313,49 @@ class Studio(Suggesting):
             self._port.refresh()
 
     def undo(self, steps: int = 1) -> bool:
-        """Undo the last step, or some steps at once; returns False if there are not so many."""
-        return self._step(self._history.to_undo, self._history.undo, steps)
+        """Undo the last step, or some steps at once; returns False if there are not so many.
+
+        The present view stays. Edits of the view alone are no steps: see `view_back`.
+        """
+        history = self._history
+        if not 1 <= steps <= len(history.to_undo):
+            return False
+        after = history.timeline.undone(steps)
+        self._show_scene(after.present.scene, lambda: history.undo(steps, after))
+        return True
 
     def redo(self, steps: int = 1) -> bool:
         """Redo the next undone step, or some steps at once; returns False if there are not so many."""
-        return self._step(self._history.to_redo, self._history.redo, steps)
+        history = self._history
+        if not 1 <= steps <= len(history.to_redo):
+            return False
+        after = history.timeline.redone(steps)
+        self._show_scene(after.present.scene, lambda: history.redo(steps, after))
+        return True
+
+    def view_back(self) -> bool:
+        """Return to the view before the last turn; returns False if there is none since the scene was opened."""
+        timeline = self._history.timeline
+        if timeline.views_back:
+            after = timeline.turned_back()
+            self._show_scene(after.present.scene, lambda: self._history.turn(after))
+        return bool(timeline.views_back)
+
+    def view_forward(self) -> bool:
+        """Return to the view that `view_back` left; returns False if there is none."""
+        timeline = self._history.timeline
+        if timeline.views_forward:
+            after = timeline.turned_forward()
+            self._show_scene(after.present.scene, lambda: self._history.turn(after))
+        return bool(timeline.views_forward)
+
+    def take_back(self) -> None:
+        """Take the last gesture back, of a look or of the view, as if it had not been made."""
+        steps = self._history.steps
+        if steps and isinstance(steps[-1], Edit) and not steps[-1].changes_look:
+            self.view_back()
+        else:
+            self.undo()
 
     @property
     def is_changed(self) -> bool:
@@ -344,10 +381,13 @@ class Studio(Suggesting):
         return name
 
     def show_variant(self, name: str) -> None:
-        """Make a variant the current scene, by one step to undo; nothing happens if they are equal."""
-        scene = self.variants[name].scene
-        if not scene.equals(self.scene):
-            self._show_scene(scene, lambda: self._history.show(name))
+        """Make a variant the current scene, by one step to undo, in the present view.
+
+        A variant of another scene that was opened has its own view. Nothing happens if they are equal.
+        """
+        after = self._history.shown(name)
+        if not after.present.scene.equals(self.scene):
+            self._show_scene(after.present.scene, lambda: self._history.show(name, after))
 
     def drop_variant(self, name: str) -> None:
         """Drop a variant. Raises UsageError for an unknown name."""
@@ -535,21 +575,6 @@ class Studio(Suggesting):
         ends a widget. Raises UnavailableError without the package anywidget (extra `notebook`).
         """
         return self._port.new_widget()
-
-    def _step(self, scenes: Sequence[Scene], move: Callable[[], None], steps: int) -> bool:
-        """Show the scene that is some steps from the end, and move there in the history by these steps.
-
-        Returns False if there are not so many.
-        """
-        if not 1 <= steps <= len(scenes):
-            return False
-
-        def note() -> None:
-            for _ in range(steps):
-                move()
-
-        self._show_scene(scenes[-steps], note)
-        return True
 
     def _show_scene(
         self, scene: Scene, note: Callable[[], object], costs: Tier | None = None, moving: bool = False

@@ -1,4 +1,4 @@
-"""The history of a session: its steps in order, the scenes to undo and to redo, and the variants.
+"""The history of a session: its steps in order, its timeline, the variants, and the files of its scenes.
 
 Every step gives the same scene when it is taken again after the steps before it, so the journal of a session
 is the list of its steps.
@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import count, pairwise
 from string import ascii_uppercase
-from typing import Final, Literal, NamedTuple
+from typing import Final, NamedTuple
 
 from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.journal.places import NO_STAMP, FilesOnDisk, OnDisk, Opened, ScenePlace, Source
+from autocolor.journal.timeline import Timeline, have_one_look
 from autocolor.mapping.intensity import is_held
 from autocolor.scene.scene import AUTO, Exposure, Scene
 
@@ -23,11 +24,21 @@ LONGEST_NAME: Final = 100
 
 
 class Edit(NamedTuple):
-    """A step that changed the scene; if it `joins`, it is undone together with the step before it."""
+    """A step that changed the scene; if it `joins`, it belongs to the gesture of the edit before it."""
 
     before: Scene
     after: Scene
     joins: bool = False
+
+    @property
+    def changes_look(self) -> bool:
+        """Whether more than the view differs, so that the edit can be undone."""
+        return not have_one_look(self.before, self.after)
+
+    @property
+    def changes_view(self) -> bool:
+        """Whether the view differs."""
+        return self.before.view != self.after.view
 
 
 class Open(NamedTuple):
@@ -66,7 +77,19 @@ class Saved(NamedTuple):
     is_own: bool = True
 
 
-Step = Edit | Open | Show | Keep | Drop | Saved | Literal["undo", "redo"]
+class Undo(NamedTuple):
+    """Some steps were undone at once."""
+
+    steps: int = 1
+
+
+class Redo(NamedTuple):
+    """Some steps were redone at once."""
+
+    steps: int = 1
+
+
+Step = Edit | Open | Show | Keep | Drop | Saved | Undo | Redo
 
 
 class History:
@@ -80,24 +103,24 @@ class History:
         self.first_place = ScenePlace() if place is None else place
         self.steps: list[Step] = []
         self.variants = Variants()
-        self._present = Opened(start, self.first_place)
-        self._undo_stack: list[Opened] = []
-        self._redo_stack: list[Opened] = []
+        self.timeline = Timeline(Opened(start, self.first_place))
+        self._branches: set[str] = set()
+        """The names of the variants that are ends of undone steps, after which another step was taken."""
         self._saved: dict[ScenePlace, Saved] = {}
         self._files: dict[ScenePlace, tuple[str, ...]] = {}
         self.on_disk = FilesOnDisk()
         """The files that the session read or wrote."""
-        self._note_opened(self._present)
+        self._note_opened(self.timeline.present)
 
     @property
     def scene(self) -> Scene:
         """The current scene."""
-        return self._present.scene
+        return self.timeline.present.scene
 
     @property
     def place(self) -> ScenePlace:
         """The place that the current scene belongs to."""
-        return self._present.place
+        return self.timeline.present.place
 
     @property
     def saved(self) -> Saved:
@@ -116,12 +139,12 @@ class History:
         This is its scene file or store, else its picture file. A scene without a file is compared with the
         scene that was opened or marked as saved last.
         """
-        return not self._is_on_disk(self._present)
+        return not self._is_on_disk(self.timeline.present)
 
     @property
     def left_unsaved(self) -> tuple[str, ...]:
         """The names of scenes with unsaved changes that the session left for other scenes."""
-        steps = [*self._undo_stack, self._present]
+        steps = [*self.timeline.to_undo, self.timeline.present]
         left = {before.place: before for before, after in pairwise(steps) if before.place is not after.place}
         # Where a file was opened again, only changes of the scene before were left unsaved.
         last_of_files = {self._main_file(each.place) or each.place: each.place for each in steps}.values()
@@ -135,24 +158,27 @@ class History:
 
     @property
     def unsaved_variants(self) -> tuple[str, ...]:
-        """The names of variants that no file of the session holds, and that were not opened as they are."""
+        """The names of variants that no file of the session holds, and that were not opened as they are.
+
+        Undone steps that became a variant because another step was taken do not count.
+        """
         places = [place for place in self._saved if self._main_file(place) is None]
         scenes = [*self.on_disk.scenes, *(self._saved[place].scene for place in places)]
         return tuple(
             name
             for name, variant in self.variants.items()
-            if not any(scene.equals(variant.scene) for scene in scenes)
+            if name not in self._branches and not any(scene.equals(variant.scene) for scene in scenes)
         )
 
     @property
     def to_undo(self) -> tuple[Scene, ...]:
-        """The scenes before each step that can be undone, the last step last."""
-        return tuple(each.scene for each in self._undo_stack)
+        """The scenes before each step that can be undone, the last step last, each in the view of its time."""
+        return tuple(each.scene for each in self.timeline.to_undo)
 
     @property
     def earlier(self) -> tuple[Scene, ...]:
         """The scenes of `to_undo` that belong to the place of the current scene."""
-        return tuple(each.scene for each in self._undo_stack if each.place is self.place)
+        return tuple(each.scene for each in self.timeline.to_undo if each.place is self.place)
 
     @property
     def following_exposure(self) -> str:
@@ -178,33 +204,42 @@ class History:
 
     @property
     def to_redo(self) -> tuple[Scene, ...]:
-        """The scenes after each step that can be redone, the next step last."""
-        return tuple(each.scene for each in self._redo_stack)
+        """The scenes after each step that can be redone, the next step last, each in the view of its time."""
+        return tuple(each.scene for each in self.timeline.to_redo)
 
     def take(self, scene: Scene, same_step: bool = False) -> None:
-        """Make a scene the current one; with `same_step`, this edit and the previous one are one step."""
-        joins = same_step and bool(self._undo_stack) and not self._redo_stack
-        self._note(Edit(self.scene, scene, joins))
-        present = Opened(scene, self.place)
-        if joins:
-            self._present = present
-        else:
-            self._go_to(present)
+        """Make a scene the current one; with `same_step`, the edit belongs to the gesture of the last edit.
+
+        All edits of a gesture are one step to undo, and one view to go back from.
+        """
+        gesture = self._last_gesture() if same_step else []
+        self._note(Edit(self.scene, scene, bool(gesture)))
+        joins_look = any(edit.changes_look for edit in gesture)
+        joins_turn = any(edit.changes_view for edit in gesture)
+        self._go(self.timeline.edited(scene, joins_look, joins_turn))
 
     def open(self, opened: Opened, source: Source) -> None:
         """Make a scene the current one that was opened from a source."""
         self._note_opened(opened)
-        self._go_to(opened)
+        self._go(self.timeline.moved_to(opened))
         self.steps.append(Open(opened.scene, source))
 
-    def show(self, name: str) -> None:
-        """Make a variant the current scene, with its place. Raises UsageError for an unknown name."""
-        self._go_to(self.variants[name])
+    def shown(self, name: str) -> Timeline:
+        """The timeline that `show` leads to. Raises UsageError for an unknown name."""
+        return self.timeline.moved_to(self.variants[name], keeps_view=True)
+
+    def show(self, name: str, after: Timeline | None = None) -> None:
+        """Make a variant the current scene, with its place, in the present view if it has the same place.
+
+        Raises UsageError for an unknown name.
+        """
+        self._go(after or self.shown(name))
         self.steps.append(Show(name))
 
     def keep(self, name: str) -> None:
         """Make the current scene a variant. Raises UsageError for a name that is in use or not valid."""
-        self.variants = self.variants.with_variant(name, self._present)
+        self.variants = self.variants.with_variant(name, self.timeline.present)
+        self._branches.discard(name)
         self.steps.append(Keep(name))
 
     def drop(self, name: str) -> None:
@@ -226,19 +261,15 @@ class History:
         self._saved[self.place] = saved
         self.steps.append(saved)
 
-    def undo(self) -> None:
-        """Return to the scene before the last step. Raises IndexError if there is none."""
-        before = self._undo_stack.pop()
-        self._redo_stack.append(self._present)
-        self._present = before
-        self.steps.append("undo")
+    def undo(self, steps: int = 1, after: Timeline | None = None) -> None:
+        """Return to the look before some steps. Raises IndexError if there are not so many."""
+        self._go(after or self.timeline.undone(steps))
+        self.steps.append(Undo(steps))
 
-    def redo(self) -> None:
-        """Return to the scene after the next undone step. Raises IndexError if there is none."""
-        after = self._redo_stack.pop()
-        self._undo_stack.append(self._present)
-        self._present = after
-        self.steps.append("redo")
+    def redo(self, steps: int = 1, after: Timeline | None = None) -> None:
+        """Return to the look after some undone steps. Raises IndexError if there are not so many."""
+        self._go(after or self.timeline.redone(steps))
+        self.steps.append(Redo(steps))
 
     def _note_opened(self, opened: Opened) -> None:
         """Note the scene of a place that was opened, and its file."""
@@ -263,11 +294,31 @@ class History:
             return self._saved[opened.place].scene.equals(opened.scene)
         return not file.is_outdated and file.scene.equals(opened.scene)
 
-    def _go_to(self, opened: Opened) -> None:
-        """Make a scene the current one by a step to undo."""
-        self._undo_stack.append(self._present)
-        self._redo_stack.clear()
-        self._present = opened
+    def turn(self, after: Timeline) -> None:
+        """Go to a timeline of another view, such as `timeline.turned_back()`."""
+        self._note(Edit(self.scene, after.present.scene))
+        self._go(after)
+
+    def _go(self, after: Timeline) -> None:
+        """Go to a timeline. If it forgets steps that were undone at once, their end becomes a variant."""
+        before, self.timeline = self.timeline, after
+        forgets = before.has_jumped and before.to_redo and not after.has_jumped
+        if forgets and len(self.variants) < MOST_VARIANTS:
+            name = self.variants.free_name()
+            self.variants = self.variants.with_variant(name, before.to_redo[0])
+            self._branches.add(name)
+
+    def _last_gesture(self) -> list[Edit]:
+        """The edits of the last gesture, the last one first; none if an undo or another scene came after."""
+        gesture = []
+        for step in reversed(self.steps):
+            if isinstance(step, Edit):
+                gesture.append(step)
+                if not step.joins:
+                    break
+            elif not isinstance(step, (Keep, Drop, Saved)):
+                break
+        return gesture
 
     def _note(self, edit: Edit) -> None:
         """Note an edit among the steps; an edit that joins an edit extends it, so that a drag is one edit."""
@@ -275,7 +326,8 @@ class History:
         if edit.joins and isinstance(last, Edit):
             drag = Edit(last.before, edit.after, last.joins)
             # A drag that returns to its beginning is still a step to undo, so its way back is another edit.
-            if last.joins or not drag.before.equals(drag.after):
+            kinds = [(each.changes_look, each.changes_view) for each in (last, edit, drag)]
+            if kinds[0] == kinds[1] == kinds[2]:
                 self.steps[-1] = drag
                 return
         self.steps.append(edit)

@@ -1,12 +1,12 @@
 """The journal of a session: a file of JSON lines, one line a step, to which lines are only ever appended.
 
-    {"step": "begin", "version": 1, "path": "/home/ann/coupe", "up": "z", ..., "checksum": "9f2c..."}
+    {"step": "begin", "version": 2, "path": "/home/ann/coupe", "up": "z", ..., "checksum": "9f2c..."}
     {"step": "edit", "change": "with_light", "row": "key", "columns": {"on": false}, ..., "joins": true}
     {"step": "edit", "change": "replace", "row": null, "columns": {...}, "mesh": "scene-2", "joins": false}
     {"step": "open", "path": "/home/ann/car.obj", "up": "y", ..., "tables": {...}, "checksum": "03ab..."}
     {"step": "keep", "name": "A"}
     {"step": "saved", "files": {"/home/ann/car/scene.toml": "77d0...", "/home/ann/car.npz": "c1e9..."}}
-    {"step": "undo"}
+    {"step": "undo", "steps": 1}
 
 The other steps are `show` and `drop`, with the name of a variant, `redo`, and `on_disk`, which is
 like `saved` for files that get a backup before they are overwritten. An edit is the call of a method of the
@@ -16,6 +16,8 @@ opened scene has all its tables, so that only the mesh must still be in the file
 
 A line counts once its newline is written. If the program was killed during a line, its part is ignored. A
 refused line is named by its number: remove it and the lines after it to recover the steps before.
+
+In version 1, an edit of the view was a step to undo as well; its `undo` and `redo` have no number of steps.
 """
 
 from __future__ import annotations
@@ -36,13 +38,14 @@ from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_toml.scene_meshes import SOURCES
 from autocolor.files.scene_writing import write_scene
-from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
+from autocolor.journal.history import Drop, Edit, History, Keep, Open, Redo, Saved, Show, Step, Undo
 from autocolor.journal.places import Opened, Source, checksum_of, opened
+from autocolor.journal.timeline import have_one_look
 from autocolor.scene.columns import difference, fields_of, to_plain
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 
-VERSION: Final = 1
+VERSION: Final = 2
 
 LARGEST_JOURNAL: Final = 64 << 20
 """Limit: bytes; some hundred thousand steps."""
@@ -85,12 +88,18 @@ def _session_of(path: Path) -> JournalSession:
     if not lines or not lines[0].startswith(b'{"step": "begin", '):
         raise InputError(f"{path.name}: a journal must begin as autocolor writes it; choose another file")
     with _in_line(path.name, 1):
-        first, source = _opened(_record_of(lines[0]))
+        begin = _record_of(lines[0])
+        first, source = _opened(begin)
     history = History(*first)
     meshes = {"": history.start.mesh}
+    earlier = EarlierSteps() if begin["version"] == 1 else None
     for number, line in enumerate(lines[1:], 2):
         with _in_line(path.name, number):
-            _take(_record_of(line), history, meshes, path.parent)
+            record = _record_of(line, begin["version"])
+            if earlier is None:
+                _take(record, history, meshes, path.parent)
+            else:
+                earlier.take(record, history, meshes, path.parent)
     return JournalSession(history, source)
 
 
@@ -116,8 +125,8 @@ def step_line(step: Step, start: Scene, meshes: MeshesBeside) -> str:
             return _line({"step": type(step).__name__.lower(), "name": name})
         case Saved():
             return _line({"step": "saved" if step.is_own else "on_disk", "files": step.files})
-        case _:
-            return _line({"step": step})
+        case Undo(steps) | Redo(steps):
+            return _line({"step": type(step).__name__.lower(), "steps": steps})
 
 
 def _line(record: Mapping[str, object]) -> str:
@@ -266,8 +275,8 @@ STEPS: Final[Mapping[str, Mapping[str, tuple[type, ...]]]] = {
     "drop": {"name": (str,)},
     "saved": {"files": (dict,)},
     "on_disk": {"files": (dict,)},
-    "undo": {},
-    "redo": {},
+    "undo": {"steps": (int,)},
+    "redo": {"steps": (int,)},
 }
 """The required fields of the kinds of steps, with the types of their values."""
 
@@ -275,14 +284,16 @@ Record = dict[str, Any]
 """The fields of a step with values of the right types."""
 
 
-def _record_of(line: bytes) -> Record:
-    """The step of a line. Raises InputError if this version writes no such line."""
+def _record_of(line: bytes, version: int = VERSION) -> Record:
+    """The step of a line. Raises InputError if neither this version nor an earlier one writes such a line."""
     if len(line) > LONGEST_LINE:
         raise InputError(f"it must be at most {LONGEST_LINE:,} bytes, not {len(line):,}; remove it")
     try:
         record = json.loads(line.decode())
     except (ValueError, RecursionError):
         record = None
+    if version == 1 and record in ({"step": "undo"}, {"step": "redo"}):
+        record["steps"] = 1
     if not isinstance(record, dict) or not _is_step(record):
         text = shown(line.decode(errors="replace"))
         raise InputError(
@@ -301,7 +312,9 @@ def _is_step(record: Record) -> bool:
     if not all(type(record[name]) in types for name, types in fields.items()):
         return False
     if kind == "begin":
-        return bool(record["version"] == VERSION)
+        return record["version"] in (1, VERSION)
+    if kind in ("undo", "redo"):
+        return bool(record["steps"] >= 1)
     if kind in ("saved", "on_disk"):
         return all(isinstance(stamp, str) for stamp in record["files"].values())
     if kind == "edit":
@@ -310,6 +323,9 @@ def _is_step(record: Record) -> bool:
         has_right_mesh = record["mesh"] is None or change == "replace"
         return has_right_row and has_right_mesh and not (change.startswith("without") and record["columns"])
     return True
+
+
+NO_STEP: Final = "there must be a step to {}, and there is none; remove the line"
 
 
 def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Path) -> None:
@@ -336,12 +352,47 @@ def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Pat
             history.mark_saved(record["files"], is_own=kind == "saved")
         case "undo" | "redo":
             try:
-                getattr(history, kind)()
+                getattr(history, kind)(record["steps"])
             except IndexError:
-                problem = f"there must be a step to {kind}, and there is none; remove the line"
-                raise InputError(problem) from None
+                raise InputError(NO_STEP.format(kind)) from None
         case _:
             raise InputError("a journal must begin once; remove the line")
+
+
+class EarlierSteps:
+    """The steps to undo and to redo of a journal of version 1, where an edit of the view was a step as well.
+
+    The scene after each line is the scene that version 1 showed. Its views are edits of the view now.
+    """
+
+    def __init__(self) -> None:
+        self._befores: list[Opened] = []
+        self._afters: list[Opened] = []
+
+    def take(self, record: Record, history: History, meshes: dict[str, Mesh], folder: Path) -> None:
+        """Take a step in a history, as `_take` does."""
+        kind, present = record["step"], history.timeline.present
+        view = None
+        if kind in ("undo", "redo"):
+            there, here = self._befores, self._afters
+            if kind == "redo":
+                there, here = here, there
+            if not there:
+                raise InputError(NO_STEP.format(kind))
+            before = there.pop()
+            here.append(present)
+            view = before.scene.view
+            if before.place is not present.place or not have_one_look(before.scene, present.scene):
+                _take(record, history, meshes, folder)
+        else:
+            _take(record, history, meshes, folder)
+            if kind in ("open", "show") or not record.get("joins", True):
+                self._befores.append(present)
+                self._afters.clear()
+            if kind == "show":
+                view = history.variants[record["name"]].scene.view
+        if view is not None and view != history.scene.view:
+            history.take(history.scene.replace(view=view))
 
 
 def _opened(record: Record, history: History | None = None) -> tuple[Opened, Source]:
