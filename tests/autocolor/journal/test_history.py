@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autocolor import UsageError
-from autocolor.journal.history import Edit, History, Variants
+from autocolor.journal.history import Edit, History, Undo, Variants
 from autocolor.journal.places import Opened, ScenePlace, Source
 from tests.small import car
 from tests.tables import call, refused
@@ -30,7 +30,7 @@ def test_an_edit_after_an_undo_begins_a_step_and_forgets_what_was_undone() -> No
     history.undo()
     history.take(SCENES[2], same_step=True)
     assert history.to_redo == ()
-    assert history.steps == [Edit(SCENES[0], SCENES[1]), "undo", Edit(SCENES[0], SCENES[2])]
+    assert history.steps == [Edit(SCENES[0], SCENES[1]), Undo(), Edit(SCENES[0], SCENES[2])]
 
 
 def test_each_place_knows_what_was_saved_of_it() -> None:
