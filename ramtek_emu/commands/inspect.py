@@ -116,8 +116,8 @@ def inspect(
     """
     if who is not None and who_entry is not None:
         raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
-    if numbers is not None and output is None:
-        raise click.UsageError("a range must have an output; add -o OUT")
+    if numbers is not None:
+        refuse_range(numbers, at, output)
     refuse_outputs(force, *([output] if numbers else ()), pictures=[snapshot, None if numbers else output])
     display = display_asked_for(configuration, start, table)
 
@@ -130,7 +130,7 @@ def inspect(
     replay = Replay(read_stream(stream, sizes), display)
     last = len(replay.stream)
     refuse_outside("an instruction", at, last, stream)
-    refuse_outside("an instruction", None if numbers is None else max(numbers), last, stream)
+    refuse_outside("an instruction", None if numbers is None else numbers[1], last, stream)
     asks = who is not None or who_entry is not None
     if output is None and snapshot is None and not asks and not as_json:
         from ramtek_emu.inspection.inspector import inspect
@@ -140,7 +140,7 @@ def inspect(
         return
     number = last if at is None else at
     if numbers is not None and output is not None:
-        words = replay.stream.words_between(max(0, numbers[0] - 1), numbers[1])
+        words = replay.stream.words_between(numbers[0] - 1, numbers[1])
         write_atomically(Path(output), words.astype("<u2").tobytes(), overwrite=force)
         tell(f"wrote {output}")
     elif output is not None:
@@ -158,6 +158,19 @@ def inspect(
     elif as_json:
         replay.go_to(number)
         click.echo(json.dumps(plain_moment(replay)))
+
+
+def refuse_range(numbers: tuple[int, int], at: int | None, output: str | None) -> None:
+    """Refuse a range that is empty, or that other options do not go with."""
+    if output is None:
+        raise click.UsageError("a range must have an output; add -o OUT")
+    if at is not None:
+        raise click.UsageError("a stream must be asked for --at or --range, not both; ask twice")
+    first, last = numbers
+    if not 1 <= first <= last:
+        raise click.UsageError(
+            f"a range must begin at instruction 1 or later and not end before, not {first}..{last}; give A..B"
+        )
 
 
 def refuse_outside(thing: str, value: int | None, most: int, place: str = "") -> None:
@@ -202,7 +215,5 @@ def plain_moment(replay: Replay) -> dict[str, Any]:
     from ramtek_emu.inspection.differences import plain_values
 
     instruction = replay.stream.item(replay.number).to_plain() if replay.number else None
-    reply = [] if replay.reply is None else replay.reply.tolist()
-    return {"number": replay.number, "of": len(replay.stream), "instruction": instruction, "reply": reply} | (
-        plain_values(replay.display)
-    )
+    place = {"number": replay.number, "of": len(replay.stream), "instruction": instruction}
+    return place | {"reply": replay.reply.tolist()} | plain_values(replay.display)

@@ -27,10 +27,9 @@ from ramtek_emu.commands.displays import (
 
 if TYPE_CHECKING:
     from ramtek_emu.commands.displays import Run
-    from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.pipe import Read, Write
     from ramtek_emu.host.server import HostSession, Server
-    from ramtek_emu.inspection.running_host import RunningHost
+    from ramtek_emu.inspection.replay import Replay
 
 Obey = Callable[[], object]
 """A function that obeys the waiting lines for the joystick."""
@@ -39,7 +38,7 @@ EXAMPLES: Final = """\b
 Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
-  ramtek serve --port 9300 --inspect                stop its host, step, ask who wrote a pixel
+  ramtek serve --port 9300 --inspect                pause its host, look back, ask who wrote a pixel
   ramtek serve --unix /tmp/display                  a display for programs that open a device
   ramtek serve --port 9300 --joystick -             type `cursor 100 200 enter` to point at something
   old_program | ramtek serve --stdio -o out.png     a program that only draws
@@ -63,7 +62,7 @@ MOST_WRITTEN: Final = 1 << 16
 @click.option("--stdio", is_flag=True, help="Words on stdin, replies on stdout.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen at.")
 @click.option("--window", is_flag=True, help="Show the display in a window.")
-@click.option("--inspect", is_flag=True, help="In a window, pause the host, step, and look back.")
+@click.option("--inspect", is_flag=True, help="In a window, pause the host and look back.")
 @click.option(
     "--joystick",
     metavar="FILE",
@@ -118,12 +117,13 @@ def serve(
     from ramtek_emu.host.server import HostSession, TcpServer, UnixServer
 
     with running(display, output, snapshot, record, force) as run:
-        inspected: RunningHost | None = None
+        inspected: Replay | None = None
+        recording = run.record
         if inspect:
-            from ramtek_emu.inspection.running_host import RunningHost
+            from ramtek_emu.inspection.running_host import recording_into, replay_from
 
-            inspected = RunningHost(display, run.record)
-        recording = run.record if inspected is None else inspected.record
+            inspected = replay_from(display)
+            recording = recording_into(inspected, run.record)
         server: Server | None = None
         if unix is not None:
             server = UnixServer(display, unix, idle_seconds=idle, record=recording)
@@ -131,8 +131,6 @@ def serve(
             server = TcpServer(display, port, host, idle_seconds=idle, record=recording)
         with server or nullcontext():
             session = HostSession(display, recording) if server is None else server.session
-            if inspected is not None:
-                inspected.session = session
             obey: Obey | None = None
             if joystick is not None:
                 from ramtek_emu.host.joystick import JoystickLines
@@ -146,7 +144,7 @@ def serve(
 
 
 def serve_stdio(
-    session: HostSession, run: Run, window: bool, obey: Obey | None, inspected: RunningHost | None
+    session: HostSession, run: Run, window: bool, obey: Obey | None, inspected: Replay | None
 ) -> None:
     """Serve the program at the other end of stdin and stdout until it closes its end."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
@@ -159,7 +157,7 @@ def serve_stdio(
     else:
         source = pipe = PolledPipe(session, read, write)
         if window or inspected is not None:
-            watch(session.display, run, obey, inspected, lambda _: pipe.step(), pipe.serve_for)
+            watch(session, run, obey, inspected, lambda _: pipe.step(), pipe.serve_for)
         while obey and not (window or inspected or run.ends or (pipe.ended and pipe.has_replied)):
             obey()
             if pipe.ended or not pipe.step():
@@ -169,22 +167,21 @@ def serve_stdio(
 
 
 def watch(
-    display: Ramtek9300,
+    session: HostSession,
     run: Run,
     obey: Obey | None,
-    inspected: RunningHost | None,
+    inspected: Replay | None,
     step: Callable[[float], bool],
     serve_for: Callable[[float], None],
     is_busy: Callable[[], bool] = lambda: False,
 ) -> None:
     """Show the display in a window, or in that of an inspector, until it is closed or a signal ends it."""
     if inspected is not None:
-        from ramtek_emu.inspection import inspector
+        from ramtek_emu.inspection.inspector import inspect_host
+        from ramtek_emu.inspection.running_host import RunningHost
 
-        inspected.step, inspected.is_connected = step, is_busy
-        inspected.obey = obey or inspected.obey
-        name = display.configuration.name.replace("_", " ")
-        inspector.inspect_host(inspected, f"RAMTEK {name}", lambda: run.ends)
+        host = RunningHost(session, inspected, step, is_busy, obey or (lambda: None))
+        inspect_host(host, f"RAMTEK {session.display.configuration.name.replace('_', ' ')}", lambda: run.ends)
         return
 
     def obey_and_serve_for(seconds: float) -> None:
@@ -192,7 +189,7 @@ def watch(
             obey()
         serve_for(seconds)
 
-    show(display, run, obey_and_serve_for, is_busy)
+    show(session.display, run, obey_and_serve_for, is_busy)
 
 
 def standard_streams(run: Run) -> tuple[Read, Write | None]:
@@ -241,7 +238,7 @@ def serve_hosts(
     window: bool,
     once: bool,
     obey: Obey | None,
-    inspected: RunningHost | None,
+    inspected: Replay | None,
 ) -> None:
     """Serve hosts until a signal, until the window is closed, or, with `once`, until a host leaves."""
     if window or inspected is not None:
@@ -252,7 +249,7 @@ def serve_hosts(
         open_screen()
         announce(server)
         serve_for = partial(server.serve_for, wait=HOST_SECONDS)
-        watch(server.display, run, obey, inspected, server.step, serve_for, lambda: server.busy)
+        watch(server.session, run, obey, inspected, server.step, serve_for, lambda: server.busy)
         return
     announce(server)
     while not run.ends and not (once and server.served):

@@ -56,8 +56,8 @@ class Inspector:
         rows = layout.boxes["listing"].rows - 1, layout.boxes["history"].rows - 1
         session = sessions.with_rows(session, *rows)
         self.page = InspectorPage(session, layout, labels, help_rows(is_live), caption)
-        self._anchor: tuple[str, Point] | None = None
-        """Where the mouse went down: the part of the page, and the place."""
+        self._anchor, self._anchor_place = "", Point(0, 0)
+        """The part of the page where the mouse went down, or "joystick", and the place; "" while it is up."""
         self.monitor = Monitor(
             display,
             caption,
@@ -107,8 +107,7 @@ class Inspector:
                 return True
         name = f"{'shift ' if key.shift else ''}{'ctrl ' if key.control else ''}{key.name}"
         for binding in self.bindings:
-            # On some keyboards a bracket is typed with other keys.
-            if (name in binding.keys or key.text in binding.keys) and not (key.repeated and binding.is_once):
+            if name in binding.keys and not (key.repeated and binding.is_once):
                 self._do(binding.action)
                 break
         return True
@@ -123,16 +122,13 @@ class Inspector:
             steps = pointer.steps if pointer.action == "wheel down" else -pointer.steps
             if part in WHEEL:
                 self._do(WHEEL[part], steps)
-        elif (
-            session.is_following
-            and not session.page
-            and self._anchor is None
-            and (part == "stage" or pointer.action == "release")
-        ):
-            # The mouse is the joystick over the field, or where a button goes up.
+        elif (session.is_following and part == "stage" and not session.page) or self._anchor == "joystick":
+            # The mouse is the joystick over the field, and beyond it while a button is down.
             on_field = page.field_place(place)
             self.monitor.steer(pointer._replace(element=on_field.element, line=on_field.line))
             self._do(point_at, on_field)
+            if pointer.action != "move":
+                self._anchor = "joystick" if pointer.action == "press" else ""
         elif pointer.action == "press" and is_left:
             self._press_at(part, row, place)
         elif pointer.action == "press" and pointer.button == RIGHT and part == "stage":
@@ -140,9 +136,9 @@ class Inspector:
         elif pointer.action == "move":
             self._move_to(part, place)
         elif pointer.action == "release" and is_left:
-            if self._anchor is not None and self._anchor[0] == "stage":
-                self._select_to(self._anchor[1], place, is_final=True)
-            self._anchor = None
+            if self._anchor == "stage":
+                self._select_to(place, is_final=True)
+            self._anchor = ""
 
     def _press_at(self, part: str, row: int, place: Point) -> None:
         if part == "button":
@@ -150,13 +146,13 @@ class Inspector:
         elif part in ("listing", "history") and row >= 0:
             self._do(sessions.click_listing if part == "listing" else sessions.click_history, row)
         elif part == "bar" or (part == "stage" and self.session.page != "help"):
-            self._anchor = part, place
+            self._anchor, self._anchor_place = part, place
             if part == "bar":
                 self._do(sessions.go, self.page.number_at(place.element))
 
     def _move_to(self, part: str, place: Point) -> None:
         page = self.page
-        if self._anchor is not None and self._anchor[0] == "bar":
+        if self._anchor == "bar":
             self._do(sessions.go, page.number_at(place.element))
             return
         if part != "stage" or self.session.page == "help":
@@ -165,12 +161,12 @@ class Inspector:
             self._do(point_at, None, page.entry_at(place))
         else:
             self._do(point_at, page.field_place(place))
-        if self._anchor is not None and place != self._anchor[1]:
-            self._select_to(self._anchor[1], place, is_final=False)
+        if self._anchor == "stage" and place != self._anchor_place:
+            self._select_to(place, is_final=False)
 
-    def _select_to(self, begin: Point, end: Point, is_final: bool) -> None:
+    def _select_to(self, end: Point, is_final: bool) -> None:
         """Select from where the mouse went down to a place; a final selection asks for its history."""
-        page = self.page
+        page, begin = self.page, self._anchor_place
         if self.session.page == "entries":
             first, last = page.entry_at(begin), page.entry_at(end)
             if first is not None and last is not None:
@@ -232,10 +228,9 @@ BINDINGS: Final = (
         lambda session: sessions.go(session, 0), "|<",
     ),
     KeyBinding("Page Up", "ten back", ("page up",), lambda session: sessions.step(session, -10), "-10"),
-    KeyBinding("Left, Up", "step back", ("left", "up", ","), lambda session: sessions.step(session, -1), "<"),
+    KeyBinding("Left, Up", "step back", ("left", "up"), lambda session: sessions.step(session, -1), "<"),
     KeyBinding(
-        "Right, Down", "step; a paused host sends its next instruction", ("right", "down", "."),
-        lambda session: sessions.step(session, 1), ">",
+        "Right, Down", "step on", ("right", "down"), lambda session: sessions.step(session, 1), ">"
     ),
     KeyBinding("Page Down", "ten on", ("page down",), lambda session: sessions.step(session, 10), "+10"),
     KeyBinding(
@@ -254,14 +249,6 @@ BINDINGS: Final = (
     KeyBinding(
         "Shift+C", "the change before of what is selected", ("shift c",),
         lambda session: sessions.next_change(session, back=True),
-    ),
-    KeyBinding(
-        "[", "the write before, in the history", ("[",),
-        lambda session: sessions.next_write(session, back=True),
-    ),
-    KeyBinding(
-        "]", "the write after, in the history", ("]",),
-        lambda session: sessions.next_write(session, back=False),
     ),
     KeyBinding(
         "F4", "the entries of the lookup table, and back", ("f4",),

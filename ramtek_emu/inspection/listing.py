@@ -6,6 +6,7 @@ A poll is an instruction that reads, such as RCSS. Consecutive polls with equal 
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterable
 from typing import Final
 
@@ -17,13 +18,13 @@ from ramtek_emu.instruction_set.disassembler import data_texts, head_text
 from ramtek_emu.instruction_set.table import FORMATS
 
 LONGEST_MEANING: Final = 200
-"""The most characters of an instruction in the listing."""
+"""The most characters of an instruction in a row of the listing."""
 POLLS: Final = frozenset(format.opcode for format in FORMATS if format.meaning.startswith("read "))
 """The opcodes of instructions that read."""
 
 
-def meaning_of(stream: Stream, number: int) -> str:
-    """The right side of an instruction's listing in one line, cut after LONGEST_MEANING characters."""
+def meaning_of(stream: Stream, number: int, most: int = LONGEST_MEANING) -> str:
+    """The right side of an instruction's listing in one line, cut after `most` characters."""
     item = stream.item(number)
     if item.instruction is None:
         words = " ".join(f"{word:04X}" for word in item.words[:8].tolist())
@@ -31,9 +32,9 @@ def meaning_of(stream: Stream, number: int) -> str:
     text = head_text(item.instruction)
     for _, data in data_texts(item.instruction):
         text += f"  {data}"
-        if len(text) > LONGEST_MEANING:
+        if len(text) > most:
             break
-    return text[:LONGEST_MEANING]
+    return text[:most]
 
 
 def row_at(stream: Stream, number: int) -> range:
@@ -95,10 +96,10 @@ def pattern_of(text: str) -> re.Pattern[str]:
 
 
 def next_with(stream: Stream, text: str, numbers: Iterable[int]) -> Search[int | None]:
-    """The first of some instructions whose row has a text; None if no row has it."""
+    """The first of some instructions whose whole listing has a text; None if there is none."""
     pattern = pattern_of(text)
     for number in numbers:
-        if pattern.search(meaning_of(stream, number)):
+        if pattern.search(meaning_of(stream, number, sys.maxsize)):
             return number
         yield
     return None

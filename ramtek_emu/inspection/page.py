@@ -10,7 +10,11 @@ is reached and every other half second. An orange ring is around what is selecte
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from operator import attrgetter
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -18,7 +22,7 @@ import numpy as np
 from ramtek_emu.arrays import Colors, Dots, PackedColors
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.histories import EntryRange
-from ramtek_emu.inspection.session import Inspection, display_of, shown_pixels
+from ramtek_emu.inspection.session import Inspection, display_of, is_preparing, shown_pixels
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import (
     ADVANCE,
@@ -48,9 +52,9 @@ EDGE: Final = 2
 """The pixels around the field, for the rings."""
 TALL_LINES: Final = 800
 """A field with so many lines has all panels at its right."""
-PARAMETER_ROWS: Final = {2: 14, 3: 9}
-PARAMETER_WIDTHS: Final = {2: (34, 30), 3: (33, 28, 18)}
-"""The rows and the widths in characters, by the number of columns."""
+PARAMETER_ROWS: Final = {True: 14, False: 9}
+PARAMETER_WIDTHS: Final = {True: (34, 30), False: (33, 28, 18)}
+"""The rows and the widths of the columns in characters, by whether the field is tall."""
 DISTANCE: Final = 2
 """The pixels between a selected pixel and the rings around it."""
 BUTTON_LINES: Final = 15
@@ -83,7 +87,7 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
     left, top = (stage.width - elements * zoom) // 2, (stage.height - lines * zoom) // 2
     field = PageBox(left, top, elements * zoom, lines * zoom)
     is_tall = stage.height >= TALL_LINES
-    rows = PARAMETER_ROWS[2 if is_tall else 3]
+    rows = PARAMETER_ROWS[is_tall]
     right, side, top = stage.width + GAP, SIDE_CHARACTERS * ADVANCE, GAP // 2
     bottom = stage.height + (0 if is_tall else (rows + cursors) * ROW + 2 * GAP)
     listed = (bottom - top - 4 * GAP) // ROW - 4 - (rows + cursors + 1 if is_tall else 0)
@@ -98,6 +102,10 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
     for name, rows in (panels_at_right | {"pixels": 3}).items():
         boxes[name] = PageBox(right, top, side, rows * ROW)
         top += rows * ROW + (0 if name == "parameters" else GAP)
+    left, down, _, height = boxes.pop("parameters")
+    for column, width in enumerate(PARAMETER_WIDTHS[is_tall]):
+        boxes[f"parameters {column}"] = PageBox(left, down, width * ADVANCE, height)
+        left += width * ADVANCE
     boxes["history"] = PageBox(right, top, side, (bottom - top) // ROW * ROW)
     places, left = [], GAP
     for label in buttons:
@@ -125,12 +133,19 @@ class InspectorPage:
         self.elements, self.lines = layout.elements, layout.lines
         self.blink_is_on = True
         self._buttons, self._help_rows, self._title = buttons, help_rows, title
-        self._pixels: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
+        self._pixels: PackedColors = np.full((self.lines, self.elements), BLACK, np.uint32)
+        bottom = layout.bar.top - BUTTON_LINES - 9
+        self._pixels[:bottom, layout.stage.width] = RAISED
+        self._pixels[layout.stage.height, : layout.stage.width] = self._pixels[bottom] = RAISED
         self._marked: tuple[int, bool] = (-1, True)
         """The current instruction, and the phase of the blinking when it was reached."""
+        self._shown: dict[str, Any] = {}
+        """What the parts of the page show."""
+        self._listed: tuple[Any, dict[str, Sequence[Line]]] = None, {}
+        """The panels that list instructions, and what they were made from."""
         self._drawn: Any = None
         self._before: Any = None
-        self._runs: tuple[Run, ...] = ()
+        self._changed: list[Run] = []
         """The lines that the last drawing changed."""
 
     # A field for the window.
@@ -143,18 +158,24 @@ class InspectorPage:
         scan_out.blink_is_on = self.blink_is_on
         if self._marked[0] != self.session.number:
             self._marked = self.session.number, self.blink_is_on
-        return self.session, scan_out.stamp, self.session.written is not None and self._marks_are_shown
+        replay = self.session.replay
+        place = len(replay.stream.words), replay.prepared
+        return self.session, place, scan_out, scan_out.stamp, self._marks_are_shown
 
     @property
     def _marks_are_shown(self) -> bool:
-        return self._marked[1] == self.blink_is_on
+        """Whether rings are around the pixels that the instruction writes now."""
+        session, phase = self.session, self._marked[1]
+        has_written = session.replay.written is not None and session.replay.number == session.number
+        return has_written and not session.is_following and phase == self.blink_is_on
 
     def lines_changed_since(self, last: Any) -> tuple[Run, ...]:
         """The lines that may have changed since the page with the stamp `last`; all lines for None."""
         self.draw()
         if last == self._drawn:
             return ()
-        return self._runs if last is not None and last == self._before else ((0, self.lines),)
+        is_next = last is not None and last == self._before
+        return united(self._changed if is_next else [(0, self.lines)], self.lines)
 
     def scan_out_changes_into(self, pixels: PackedColors, last: Any) -> Any:
         """Bring pixels with the stamp `last` up to date, and return their new stamp."""
@@ -178,40 +199,53 @@ class InspectorPage:
     # Drawing.
 
     def draw(self) -> None:
-        """Draw the page if it has changed."""
+        """Draw the parts of the page that have changed."""
         stamp = self.stamp
         if stamp == self._drawn:
             return
-        session, layout, boxes = self.session, self.layout, self.layout.boxes
-        pixels: PackedColors = np.full((self.lines, self.elements), BLACK, np.uint32)
-        bottom = layout.bar.top - BUTTON_LINES - 9
-        pixels[:bottom, layout.stage.width] = RAISED
-        pixels[layout.stage.height, : layout.stage.width] = pixels[bottom] = RAISED
-        self._draw_stage(layout.stage.of(pixels))
-        parameters, rows = panels.parameters(session), boxes["parameters"].rows
-        left = 0
-        for number, width in enumerate(PARAMETER_WIDTHS[-(-len(parameters) // rows)]):
-            part = boxes["parameters"].of(pixels)[:, left : left + width * ADVANCE]
-            write_rows(part, parameters[number * rows : (number + 1) * rows])
-            left += width * ADVANCE
-        panel_rows: dict[str, Sequence[Line]] = {
-            "listing": [panels.title(session), *panels.listing(session)],
-            "words": panels.words_of_the_instruction(session, boxes["words"].rows - 1, SIDE_CHARACTERS),
+        session, layout = self.session, self.layout
+        self._before, self._drawn, self._changed = self._drawn, stamp, []
+        marks = self._marks_are_shown and session.number
+        self._part(
+            "stage", layout.stage, (stamp[2:], marks, session.page, session.selection), self._draw_stage
+        )
+        for name, rows in self._rows().items():
+            self._part(name, layout.boxes[name], rows, partial(write_rows, rows=rows))
+        for number, (box, button) in enumerate(zip(layout.buttons, self._buttons, strict=True)):
+            text = panels.button_text(session, button)
+            self._part(f"button {number}", box, text, partial(draw_button, text=text))
+        prepared = session.replay.prepared if is_preparing(session) else session.length
+        numbers = session.length, prepared, session.target, session.number
+        self._part("bar", layout.bar, (numbers, session.writes), partial(self._draw_bar, prepared=prepared))
+
+    def _part(self, name: str, box: PageBox, shown: Any, draw: Callable[[PackedColors], None]) -> None:
+        """Draw a part of the page if what it shows has changed."""
+        if shown != self._shown.get(name):
+            self._shown[name] = shown
+            pixels = box.of(self._pixels)
+            pixels[...] = BLACK
+            draw(pixels)
+            self._changed.append((box.top, box.top + box.height))
+
+    def _rows(self) -> dict[str, Sequence[Line]]:
+        """The rows of the panels."""
+        session, boxes = self.session, self.layout.boxes
+        # A move of the mouse lists no instruction again.
+        key = replace(session, pointer=None, pointed_entry=None), len(session.replay.stream.words)
+        if key != self._listed[0]:
+            words = panels.words_of_the_instruction(session, boxes["words"].rows - 1, SIDE_CHARACTERS)
+            history = [panels.history_title(session), *panels.history(session)]
+            self._listed = key, {"listing": panels.listing(session), "words": words, "history": history}
+        rows = self._listed[1] | {
+            "listing": [panels.title(session), *self._listed[1]["listing"]],
             "cursors": panels.cursors(session),
             "pixels": panels.pixels(session),
-            "history": [panels.history_title(session), *panels.history(session)],
             "status": [panels.status(session)],
         }
-        for name, lines in panel_rows.items():
-            write_rows(boxes[name].of(pixels), lines)
-        for box, button in zip(layout.buttons, self._buttons, strict=True):
-            part = box.of(pixels)
-            part[...] = RAISED
-            write_rows(part[2:], [(Span(f" {panels.button_text(session, button)} "),)], RAISED)
-        self._draw_bar(layout.bar.of(pixels))
-        changed = np.flatnonzero((pixels != self._pixels).any(axis=1)).tolist()
-        self._runs = united(((line, line + 1) for line in changed), self.lines)
-        self._before, self._drawn, self._pixels = self._drawn, stamp, pixels
+        parameters, height = panels.parameters(session), boxes["parameters 0"].rows
+        for column, first in enumerate(range(0, len(parameters), height)):
+            rows[f"parameters {column}"] = parameters[first : first + height]
+        return rows
 
     def _draw_stage(self, stage: PackedColors) -> None:
         session, scan_out = self.session, display_of(self.session).scan_out
@@ -232,8 +266,9 @@ class InspectorPage:
             field[...] = self._enlarged(pixels)
             shown = self.layout.field.of(dots)
             places, rows = shown_pixels(display_of(session))
-            if session.written is not None and self._marks_are_shown:
-                shown[...] = self._enlarged(session.written[rows[:, np.newaxis], places])
+            written = session.replay.written
+            if written is not None and self._marks_are_shown:
+                shown[...] = self._enlarged(written[rows[:, np.newaxis], places])
                 mark(stage, dots, BLACK, WHITE)
             if isinstance(selection, Window):
                 inside = (places >= selection.left) & (places <= selection.right)
@@ -253,12 +288,17 @@ class InspectorPage:
         stage = self.layout.stage
         return cells(len(self.table()), stage.height - 2 * EDGE, stage.width - 2 * EDGE)
 
-    def _draw_bar(self, bar: PackedColors) -> None:
-        session = self.session
-        prepared = session.length if session.host is not None else session.prepared
+    def _draw_bar(self, bar: PackedColors, prepared: int) -> None:
+        session, last = self.session, self.layout.bar.width - 1
         bar[...] = RAISED
         bar[:, : self.bar_place(prepared) + 1] = PREPARED
-        bar[3:-3, [self.bar_place(write.number) for write in session.writes or ()]] = ORANGE
+        writes, index = session.writes or (), 0
+        while index < len(writes):
+            place = self.bar_place(writes[index].number)
+            bar[3:-3, place] = ORANGE
+            # Skip the other writes at this place.
+            following = -(-(place + 1) * session.length // last)
+            index = bisect_left(writes, following, key=attrgetter("number"))
         for number, color in ((session.target, GRAY), (session.number, WHITE)):
             place = self.bar_place(number)
             bar[:, max(0, place - 1) : place + 2] = color
@@ -304,3 +344,9 @@ class InspectorPage:
         )
         word = int(words[line, element])
         return display_of(self.session).scan_out.first_entry + word if word < len(self.table()) else None
+
+
+def draw_button(pixels: PackedColors, text: str) -> None:
+    """Draw a button with a text."""
+    pixels[...] = RAISED
+    write_rows(pixels[2:], [(Span(f" {text} "),)], RAISED)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import textwrap
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import islice
+from operator import attrgetter
 from typing import Final
 
 from ramtek_emu.configuration import Configuration
@@ -15,11 +17,12 @@ from ramtek_emu.inspection.listing import meaning_of, rows_from
 from ramtek_emu.inspection.session import (
     Inspection,
     display_of,
+    is_preparing,
     parameter_texts,
     selection_text,
+    shown_writes,
 )
 from ramtek_emu.instruction_set.disassembler import WORDS_PER_LINE
-from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Window
 from ramtek_emu.monitor.boxes import BLUE, GRAY, ORANGE, WHITE, YELLOW, Line, Span
@@ -52,7 +55,9 @@ def listing(session: Inspection) -> list[Line]:
 def listed(session: Inspection, row: range) -> Line:
     """A row of the listing; equal polls are a single row."""
     is_current = session.number in row
-    is_written = any(write.number in row for write in session.writes or ())
+    writes = session.writes or ()
+    following = bisect_left(writes, row.start, key=attrgetter("number"))
+    is_written = following < len(writes) and writes[following].number in row
     number = session.number if is_current else row.start
     background = MARKED if is_current else None
     mark = ">" if is_current else "*" if is_written else " "
@@ -83,10 +88,8 @@ def words_of_the_instruction(session: Inspection, rows: int, width: int) -> list
     if len(texts) > rows:
         texts[rows - 1 :] = [f"{'':7}..."]
     lines: list[Line] = [(Span(text),) for text in texts]
-    reply = session.replay.reply if session.replay.number == number else NO_WORDS
-    if reply is None and item.instruction is not None and item.instruction.format.replies:
-        lines.append((Span("reply  ", YELLOW), Span("not known", GRAY)))
-    elif reply is not None and len(reply):
+    reply = session.replay.reply
+    if session.replay.number == number and len(reply):
         more = f" .. {len(reply):,} words"
         shown = (width - len("reply  ") - len(more)) // len("0000 ")
         words = " ".join(f"{word:04X}" for word in reply[:shown].tolist())
@@ -195,8 +198,7 @@ def history_title(session: Inspection) -> Line:
 
 def history(session: Inspection) -> list[Line]:
     """The instructions that wrote the selected pixel or entry: the word or color before and after."""
-    writes = (session.writes or ())[session.first_write : session.first_write + session.history_rows]
-    return [write_line(session, write) for write in writes]
+    return [write_line(session, write) for write in shown_writes(session)]
 
 
 def write_line(session: Inspection, write: Write) -> Line:
@@ -228,10 +230,11 @@ def status(session: Inspection) -> Line:
         return Span(f"{asked}: ", YELLOW), Span(session.typed), Span("_", ORANGE), *more
     if session.message:
         return (Span(session.message, ORANGE),)
+    prepared = session.replay.prepared
     if session.number != session.target:
-        return (Span(f"preparing {session.prepared:,} of {session.target:,} ... Esc stops", ORANGE),)
-    if session.host is None and session.prepared < session.length:
-        return (Span(f"preparing {100 * session.prepared // session.length} %", GRAY),)
+        return (Span(f"preparing {prepared:,} of {session.target:,} ... Esc stops", ORANGE),)
+    if is_preparing(session):
+        return (Span(f"preparing {100 * prepared // session.length} %", GRAY),)
     return ()
 
 

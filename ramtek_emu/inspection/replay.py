@@ -4,7 +4,8 @@ A display cannot run backwards. So states are kept on the way, and a display is 
 from the last state before it. States are STATE_SECONDS of work apart while they take at most STATE_BYTES for
 each word of the stream; if they would take more, every second state is dropped.
 
-Replies are dropped, as by `ramtek play`. Only the reply of the last instruction is kept, in `reply`.
+Replies are dropped, as by `ramtek play`. Only the reply of the last instruction is kept, in `reply`, and
+`written` has the words that the instruction wrote.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Words
+from ramtek_emu.arrays import Dots, Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.states import Packer, State, size_of, thinned
 from ramtek_emu.inspection.stream import Stream
@@ -41,21 +42,28 @@ class Replay:
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
         """Begin with a display as it is at power-on, or like `start` without its pending words."""
+        self._begin(stream, Ramtek9300(stream.configuration) if start is None else start)
+
+    def _begin(self, stream: Stream, start: Ramtek9300) -> None:
         self.stream = stream
         self.number = 0
         """How many instructions the display has executed; 0 is power-on."""
-        self.reply: Words | None = NO_WORDS
-        """The reply of the last instruction, uint16; None if it is not known."""
+        self.reply: Words = NO_WORDS
+        """The reply of the last instruction, uint16."""
+        self.written: Dots | None = None
+        """The (lines, elements) words that the last instruction wrote, also words that stayed the same.
+
+        Read-only; None at power-on.
+        """
         self._packer = Packer()
         self._seconds = STATE_SECONDS
         self._due = 0.0
         self._bytes = 0
         self._states: list[State] = []
-        begin = Ramtek9300(stream.configuration) if start is None else start
-        self._keep(self._packer.pack(begin, 0, NO_WORDS))
+        self._keep(self._packer.pack(start, 0))
         self.display = self.display_at(0)
         """The display after `number` instructions."""
-        self.display.scan_out.shown_table = begin.scan_out.shown_table
+        self.display.scan_out.shown_table = start.scan_out.shown_table
         self._preparing = self._prepare()
 
     def __repr__(self) -> str:
@@ -89,20 +97,20 @@ class Replay:
         while number < len(self.stream):
             due = thread_time() + self._seconds
             touched = watched(display).watch(display.frame_buffer.window)
-            reply = NO_WORDS
             for step in self.steps(display, number, len(self.stream)):
-                number, reply = step, reply_of(display)
+                number = step
+                display.processor.clear_replies()
                 if thread_time() >= due:
                     break
                 yield
-            self._keep(self._packer.pack(display, number, reply, np.packbits(touched, axis=1)))
+            self._keep(self._packer.pack(display, number, np.packbits(touched, axis=1)))
             yield
 
     def _keep(self, state: State) -> None:
         """Keep a state, in place of an older state with its number; drop states if there are too many."""
         if self._states and self._states[-1].number == state.number:
-            self._states.pop()
-        self._bytes += size_of([*self._states[-1:], state]) - size_of(self._states[-1:])
+            self._drop_last()
+        self._bytes += self._bytes_of_next(state)
         self._states.append(state)
         most = max(LEAST_STATE_BYTES, STATE_BYTES * len(self.stream.words))
         if self._bytes > most:
@@ -110,30 +118,55 @@ class Replay:
             self._states = thinned(self._states)
             self._bytes = size_of(self._states)
 
-    def note(self, words: Words, display: Ramtek9300, has_moved: bool = False) -> None:
-        """Append whole instructions that a running display has executed, and keep its state if one is due.
+    def _drop_last(self) -> None:
+        state = self._states.pop()
+        self._bytes -= self._bytes_of_next(state)
 
-        The display must be between two instructions. With `has_moved`, something other than an instruction
-        has changed it, such as its joystick or a reset, and a state is due.
-        """
+    def _bytes_of_next(self, state: State) -> int:
+        """The bytes of a state that follows the last state and shares blocks with it."""
+        last = self._states[-1:]
+        return size_of([*last, state]) - size_of(last)
+
+    def append(self, words: Words) -> None:
+        """Append whole instructions that a running display has executed."""
         count, end = len(self.stream), self.stream.ends[-1]
         self.stream.append(words)
-        # The last state is within a row of illegal words if the row goes on; replace it.
-        was_within = self.prepared == count and self.stream.ends[count] > end
-        if has_moved or was_within or thread_time() >= self._due:
-            self._keep(self._packer.pack(display, len(self.stream), None))
+        if self.stream.ends[count] > end:
+            # A row of illegal words goes on. Forget the display within the row.
+            if self.number == count:
+                self.go_to(count - 1)
+            if self.prepared == count:
+                self._drop_last()
+
+    def note(self, display: Ramtek9300, has_moved: bool = False) -> None:
+        """Keep the state of a running display after the last instruction of the stream, if a state is due.
+
+        With `has_moved`, something other than an instruction has changed the display, such as its joystick,
+        and a state is due.
+        """
+        if has_moved or (self.prepared < len(self.stream) and thread_time() >= self._due):
+            self._keep(self._packer.pack(display, len(self.stream)))
             self._due = thread_time() + self._seconds
+
+    def forget(self, display: Ramtek9300) -> None:
+        """Begin again with an empty stream and a display as it is now."""
+        self._begin(Stream(self.stream.configuration), display)
 
     def go_to(self, number: int) -> None:
         """Bring the display to an instruction, forward or back."""
-        state = self.state_before(number)
-        if not state.number < self.number <= number:
+        state = self.state_before(max(0, number - 1))
+        if not state.number <= self.number < number:
             state.restore(self.display)
-            self.number, self.reply = state.number, state.reply
+            self.number, self.reply, self.written = state.number, NO_WORDS, None
         if number > self.number:
             self._run(self.display, self.number, number - 1)
+            touched = watched(self.display).watch(self.display.frame_buffer.window)
             self.display.send(self.stream.words_between(number - 1, number))
-            self.number, self.reply = number, reply_of(self.display)
+            self.number, self.reply, self.written = number, reply_of(self.display), touched.copy()
+            self.written.flags.writeable = False
+            if (state := self.state_before(number)).number == number:
+                # The joystick of a running display may have moved after the instruction.
+                state.restore(self.display)
 
     def display_at(self, number: int) -> Ramtek9300:
         """A new display after `number` instructions."""

@@ -1,4 +1,4 @@
-"""RunningHost: the host of a running display, which can be stopped, and the instructions it has sent.
+"""RunningHost: the host of a running display, which can be paused, and a replay of what it has sent.
 
 What moves the cursors beside the instructions, such as the joystick, is kept with the states of the replay.
 """
@@ -11,12 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.host.server import HOST_SECONDS, HostSession, Record
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.stream import Stream
-from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.memory.cursors import Cursors
 
 PIECE_SECONDS: Final = 0.006
@@ -25,70 +23,70 @@ MOST_BYTES: Final = 1 << 28
 """Limit: the bytes of the instructions of a running display, and of the states to go back to."""
 
 
+def replay_from(display: Ramtek9300) -> Replay:
+    """A replay without instructions that begins with a display as it is."""
+    return Replay(Stream(display.configuration), display)
+
+
+def recording_into(replay: Replay, also: Record | None = None) -> Record:
+    """A function that appends the bytes of whole instructions to a replay; `also` records them, too."""
+
+    def record(data: bytes) -> None:
+        if also is not None:
+            also(data)
+        replay.append(np.frombuffer(data, "<u2").astype(np.uint16))
+
+    return record
+
+
 class RunningHost:
-    """The host of a running display, which a session may stop."""
+    """The host of a running display, and the replay that its session records into."""
 
-    def __init__(self, display: Ramtek9300, also: Record | None = None) -> None:
-        """Follow the host of a display; `also` records its instructions, too."""
-        self.display = display
-        self.session = HostSession(display, self.record)
-        """The session of the hosts; a server's own session takes its place."""
-        self._also = also
-        self.step: Callable[[float], bool] = lambda _: False
-        """Executes a piece of a host's words, as far as the session allows.
+    def __init__(
+        self,
+        session: HostSession,
+        replay: Replay,
+        step: Callable[[float], bool],
+        is_connected: Callable[[], bool] = lambda: False,
+        obey: Callable[[], object] = lambda: None,
+    ) -> None:
+        """Serve the host of a session.
 
-        It waits up to so many seconds for words, and returns whether it has done anything.
+        `step` executes a piece of the host's words, and waits up to so many seconds for words. It returns
+        whether it has done anything. `is_connected` says whether a host may send words. `obey` moves the
+        joystick or presses RESET if lines of text ask for it.
         """
-        self.obey: Callable[[], object] = lambda: None
-        """Moves the joystick or presses RESET, if lines of text ask for it."""
-        self.is_connected: Callable[[], bool] = lambda: False
-        """Whether a host is connected, so that its words are worth waiting for."""
-        self.replay = Replay(Stream(display.configuration), display)
-        """The instructions that the display has executed.
-
-        When they and their states take MOST_BYTES, another replay begins with the display as it is.
-        """
-        self._cursors, self._resets = cursor_states(display.cursors), display.resets
-        """The cursors and switches after the last instruction, and the number of resets."""
+        self.display, self.replay, self.is_connected = session.display, replay, is_connected
+        self._session, self._step, self._obey = session, step, obey
+        self._cursors = cursor_states(self.display.cursors)
+        """The cursors and switches after the last instruction."""
         self._has_moved = False
-        """Whether the joystick has moved cursors since the last state, which no instruction repeats."""
+        """Whether the cursors have moved since the last state, which no instruction repeats."""
 
-    def record(self, data: bytes) -> None:
-        """Note the bytes of whole instructions that the display has executed."""
-        if self._also is not None:
-            self._also(data)
-        words = np.frombuffer(data, "<u2").astype(np.uint16)
-        if self.session.is_within:
-            # The display has begun another instruction, so that its state cannot be kept.
-            self.replay.stream.append(words)
+    def serve(self, is_paused: bool) -> None:
+        """Execute the host's words for some milliseconds; if the host is paused, only send its replies."""
+        self._session.allowed = 0 if is_paused else None
+        self._obey()
+        # RESET also hides the cursors, which the recorded instruction does not.
+        self._has_moved |= cursor_states(self.display.cursors) != self._cursors
+        self._note()
+        end = time.monotonic() + PIECE_SECONDS
+        wait = HOST_SECONDS if not is_paused and self.is_connected() else 0.0
+        while self._step(wait) and not is_paused and time.monotonic() < end:
+            self._note()
+            wait = 0.0
+        self._note()
+        self._cursors = cursor_states(self.display.cursors)
+
+    def _note(self) -> None:
+        """Keep the state of the display if it is between instructions, within the limit of memory."""
+        if self._session.is_within:
             return
-        self._note(words)
+        self.replay.note(self.display, self._has_moved)
+        self._has_moved = False
         stream = self.replay.stream
         if stream.words.nbytes + stream.ends.nbytes + self.replay.state_bytes > MOST_BYTES:
-            self.replay = Replay(Stream(self.display.configuration), self.display)
-
-    def _note(self, words: Words) -> None:
-        """Note instructions, and the state of the display after them if no instruction leads to it."""
-        # RESET also hides the cursors, which the recorded instruction does not.
-        has_moved = self._has_moved or self.display.resets != self._resets
-        self.replay.note(words, self.display, has_moved)
-        self._has_moved, self._resets = False, self.display.resets
-
-    def serve(self, instructions: int | None) -> None:
-        """Execute the host's words for some milliseconds: at most so many instructions; None for all.
-
-        With 0 only replies are sent.
-        """
-        self.obey()
-        self._has_moved |= cursor_states(self.display.cursors) != self._cursors
-        if self._has_moved and not self.session.is_within:
-            self._note(NO_WORDS)
-        self.session.allowed = instructions
-        end = time.monotonic() + PIECE_SECONDS
-        is_done = not self.step(HOST_SECONDS if instructions != 0 and self.is_connected() else 0.0)
-        while not is_done and self.session.allowed != 0 and time.monotonic() < end:
-            is_done = not self.step(0.0)
-        self._cursors = cursor_states(self.display.cursors)
+            self.replay.forget(self.display)
 
 
 def cursor_states(cursors: Cursors) -> tuple[object, ...]:

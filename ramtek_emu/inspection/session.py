@@ -2,7 +2,7 @@
 
 An inspection stands at an instruction: its replay's display shows the state after it. `panels` puts all of it
 into words. An inspection of a running display follows the display, or is paused: then the host waits, and the
-inspection goes over the instructions that were executed, and lets the host's next instructions through.
+inspection goes over the instructions that were executed.
 
 Long work, such as the first pass over a stream or a search, is done in pieces by `tick`.
 """
@@ -16,20 +16,16 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ramtek_emu.arrays import Dots
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection import histories
 from ramtek_emu.inspection.histories import EntryRange, Search, Selection, Write
-from ramtek_emu.inspection.listing import meaning_of, moved, next_with, pattern_of, rows_from
+from ramtek_emu.inspection.listing import moved, next_with, rows_from
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
-from ramtek_emu.inspection.watching import watched
 from ramtek_emu.instruction_set.disassembler import IN_HEXADECIMAL
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.video.view import pixel_at
 
-FOLLOW_SECONDS: Final = 0.05
-"""How often the panels follow a running display, whose field follows at every tick, or a preparation."""
 AT_ONCE: Final = 10
 """So many instructions are executed at once, even if no states are prepared there."""
 MOST_TYPED: Final = 60
@@ -60,25 +56,15 @@ class Inspection:
     """The instruction after which the display is shown; 0 is the start."""
     target: int = 0
     """The instruction to go to; `number` follows as soon as states are prepared."""
-    length: int = 0
-    """The number of instructions in the stream."""
-    prepared: int = 0
-    """States are prepared up to this instruction."""
-    written: Dots | None = field(default=None, compare=False)
-    """The (lines, elements) words that the instruction writes, also words that stay the same."""
     is_following: bool = False
     """Whether the session shows a running display as it runs."""
-    wanted: int = 0
-    """The number of instructions that a paused host may still execute."""
-    awaited: Callable[[], bool] | None = None
-    """Whether the last instruction is what a paused host's instructions are let through for."""
     work: PendingSearch | None = None
     pointer: Point | None = None
     pointed_entry: int | None = None
     """The entry under the pointer, on the page of entries."""
     selection: Selection | None = None
     writes: tuple[Write, ...] | None = None
-    """The instructions that wrote the selected pixel or entry, newest first; None if nothing was asked."""
+    """The instructions that wrote the selected pixel or entry, oldest first; None if nothing was asked."""
     writes_until: int = 0
     """The last instruction that `writes` may have."""
     page: str = ""
@@ -98,16 +84,17 @@ class Inspection:
     """The first row of the history."""
     before: Mapping[str, str] = field(default_factory=dict, compare=False)
     """The values of the parameters at the position before; empty while a display runs."""
-    followed: float = field(default=0.0, compare=False)
-    """When the panels last followed a display or a preparation."""
+
+    @property
+    def length(self) -> int:
+        """The number of instructions in the stream."""
+        return len(self.replay.stream)
 
 
 def inspection_of(replay: Replay, host: RunningHost | None = None) -> Inspection:
     """The inspection of a replay where it stands; with a host and its replay, of a running display."""
-    return Inspection(
-        replay=replay, host=host, number=replay.number, target=replay.number, length=len(replay.stream),
-        prepared=replay.prepared, is_following=host is not None,
-    )  # fmt: skip
+    number = replay.number if host is None else len(replay.stream)
+    return Inspection(replay=replay, host=host, number=number, target=number, is_following=host is not None)
 
 
 # The display and the position.
@@ -123,12 +110,14 @@ def display_of(session: Inspection) -> Ramtek9300:
 
 def is_busy(session: Inspection) -> bool:
     """Whether a tick has work to do, or waits for a host itself."""
-    host = session.host
-    waits = session.is_following or session.wanted or session.awaited
-    if host is not None and waits and host.is_connected():
+    if session.is_following and session.host is not None and session.host.is_connected():
         return True
-    is_prepared = host is not None or session.prepared >= session.length
-    return session.work is not None or session.number != session.target or not is_prepared
+    return session.work is not None or session.number != session.target or is_preparing(session)
+
+
+def is_preparing(session: Inspection) -> bool:
+    """Whether a stream is not prepared to its end; the states of a running display are kept while it runs."""
+    return session.host is None and session.replay.prepared < session.length
 
 
 def with_rows(session: Inspection, listing: int, history: int) -> Inspection:
@@ -142,46 +131,24 @@ def go(session: Inspection, number: int) -> Inspection:
     session = stopped(pause(session))
     number = min(max(number, 0), session.length)
     first = _first_listed(session, number)
-    session = replace(session, target=number, wanted=0, awaited=None, message="", first_listed=first)
-    return _arrived(session)
+    return _arrived(replace(session, target=number, message="", first_listed=first))
 
 
 def step(session: Inspection, count: int) -> Inspection:
-    """Go forward, or back, by some instructions; at its end a paused host executes them."""
-    left = session.length - session.target
-    if session.host is not None and not session.is_following and count > left:
-        message = "waiting for the host's next instruction"
-        return replace(go(session, session.length), wanted=count - left, message=message)
+    """Go forward, or back, by some instructions."""
     return go(session, session.target + count)
 
 
 def _arrived(session: Inspection) -> Inspection:
     """The inspection at its target, if going there takes a moment."""
-    replay, ahead = session.replay, session.target - session.replay.number
-    if session.host is None and session.target > replay.prepared and not 0 <= ahead <= AT_ONCE:
+    replay, number = session.replay, session.target
+    if is_preparing(session) and number > replay.prepared and not 0 <= number - replay.number <= AT_ONCE:
         return session
-    return _standing(session, session.target)
-
-
-def _standing(session: Inspection, number: int) -> Inspection:
-    """The inspection at an instruction; the words that the instruction writes are noted."""
-    replay = session.replay
-    if session.number == number == replay.number and (session.written is not None or not number):
+    if session.number == number == replay.number:
         return session
-    before = session.before if number == replay.number else parameter_texts(replay.display)
-    written = None
-    if number:
-        replay.go_to(number - 1)
-        display = replay.display
-        written = watched(display).watch(display.frame_buffer.window)
-        if replay.state_before(number).number == number:
-            # The state that was kept here is restored without executing the instruction.
-            display.send(replay.stream.words_between(number - 1, number))
-            written = written.copy()
+    before = parameter_texts(replay.display)
     replay.go_to(number)
-    return replace(
-        session, number=number, target=number, prepared=replay.prepared, written=written, before=before
-    )
+    return replace(session, number=number, before=before)
 
 
 def _first_listed(session: Inspection, number: int) -> int:
@@ -203,66 +170,39 @@ def tick(session: Inspection) -> Inspection:
     # A search begins where the session stands.
     if session.work is not None and session.number == session.target:
         return _worked(session, session.work)
-    # The states of a running display are kept while it runs.
-    if session.host is None and session.prepared < session.length:
-        is_done, now = not session.replay.prepare_for(PIECE_SECONDS), time.monotonic()
-        if is_done or now - session.followed > FOLLOW_SECONDS:
-            session = replace(session, prepared=session.replay.prepared, followed=now)
+    if is_preparing(session):
+        session.replay.prepare_for(PIECE_SECONDS)
     return session if session.number == session.target else _arrived(session)
 
 
 def _served(session: Inspection, host: RunningHost) -> Inspection:
-    """Serve the host, and stand at its last instruction unless it is stopped."""
-    is_reached, end = False, time.monotonic() + PIECE_SECONDS
-    if session.awaited is None:
-        host.serve(None if session.is_following else session.wanted)
-    else:
-        while not is_reached and time.monotonic() < end:
-            length = len(host.replay.stream)
-            host.serve(1)
-            if len(host.replay.stream) == length:
-                break
-            is_reached = session.awaited()
-    if host.replay is not session.replay:
+    """Serve the host, and stand at its last instruction unless it is paused."""
+    stream = session.replay.stream
+    host.serve(not session.is_following)
+    if session.replay.stream is not stream:
         message = f"the instructions took {MOST_BYTES >> 20} MB of memory: they are counted from here on"
-        session = replace(select(session, None), replay=host.replay, written=None, message=message)
-        session = replace(session, length=0, number=0, target=0, prepared=0, first_listed=0)
-    length, now = len(session.replay.stream), time.monotonic()
-    if is_reached:
-        return replace(_at_the_end(session), awaited=None, message="")
-    if length == session.length:
-        return session
-    if session.is_following or session.awaited is not None:
-        is_due = now - session.followed > FOLLOW_SECONDS
-        return replace(_followed(session), followed=now) if is_due else session
-    wanted = max(0, session.wanted - (length - session.length))
-    return replace(_at_the_end(session), wanted=wanted, message=session.message if wanted else "")
+        session = tell(select(session, None), message)
+    return _followed(session) if session.is_following and session.length != session.number else session
 
 
 def _followed(session: Inspection) -> Inspection:
     """The inspection at the end of a stream that grows, without the replay, which follows in a pause."""
-    length = len(session.replay.stream)
-    session = replace(session, number=length, target=length, length=length, written=None)
-    return replace(session, first_listed=_first_listed(session, length))
-
-
-def _at_the_end(session: Inspection) -> Inspection:
-    return _standing(_followed(session), len(session.replay.stream))
+    length = session.length
+    return replace(session, number=length, target=length, first_listed=_first_listed(session, length))
 
 
 def pause(session: Inspection) -> Inspection:
     """Stop the host of a running display, if it runs."""
     if not session.is_following:
         return session
-    return replace(_at_the_end(replace(session, is_following=False)), before={}, message=PAUSED)
+    return replace(_arrived(_followed(replace(session, is_following=False))), before={}, message=PAUSED)
 
 
 def go_on(session: Inspection) -> Inspection:
     """Let the host of a running display go on, and follow it."""
     if session.host is None:
         return session
-    session = replace(stopped(session), is_following=True, wanted=0, awaited=None, message="", before={})
-    return _followed(session)
+    return _followed(replace(stopped(session), is_following=True, message="", before={}))
 
 
 def _started(session: Inspection, what: str, work: PendingSearch) -> Inspection:
@@ -277,7 +217,7 @@ def _worked(session: Inspection, work: PendingSearch) -> Inspection:
         while time.monotonic() < end:
             next(work.search)
     except StopIteration as result:
-        return work.found(replace(stopped(session), prepared=session.replay.prepared), result.value)
+        return work.found(stopped(session), result.value)
     return session
 
 
@@ -286,51 +226,31 @@ def stopped(session: Inspection) -> Inspection:
     return session if session.work is None else replace(session, work=None, message="")
 
 
-def _awaiting(session: Inspection, what: str, is_reached: Callable[[], bool]) -> Inspection:
-    """Let a paused host's instructions through until `is_reached()` is true after one of them."""
-    message = f"waiting for the host: {what} ... Esc stops"
-    return replace(go(session, session.length), awaited=is_reached, message=message)
-
-
 # Searches.
 
 
 def find(session: Inspection, back: bool = False) -> Inspection:
-    """Go to the next instruction whose row of the listing has the typed text, or to the last one before.
-
-    At the end of what a paused host has sent, its instructions are let through until one has the text.
-    """
+    """Go to the next instruction whose row of the listing has the typed text, or to the last one before."""
     text = session.typed.strip() if session.prompt == "text" and session.typed.strip() else session.text
     session = replace(pause(session), text=text)
     if not text:
-        return replace(session, message="type a text of the listing first, such as FORE=7 or WI WIN=")
-    target, stream, host = session.target, session.replay.stream, session.host
+        return tell(session, "type a text of the listing first, such as FORE=7 or WI WIN=")
+    target, stream = session.target, session.replay.stream
     numbers = range(target - 1, 0, -1) if back else range(target + 1, session.length + 1)
 
     def found(session: Inspection, number: int | None) -> Inspection:
         if number is not None:
             return go(session, number)
-        if host is not None and not back:
-            pattern = pattern_of(text)
-
-            def is_reached() -> bool:
-                stream = host.replay.stream
-                return len(stream) > 0 and pattern.search(meaning_of(stream, len(stream))) is not None
-
-            return _awaiting(session, text, is_reached)
         where = "before" if back else "after"
-        return replace(session, message=f"no {text} {where} instruction {target:,}")
+        return tell(session, f"no {text} {where} instruction {target:,}")
 
     return _started(session, text, PendingSearch(next_with(stream, text, numbers), found))
 
 
 def next_change(session: Inspection, back: bool = False) -> Inspection:
-    """Go to the next instruction that changes a selected pixel, rectangle or entry, or to the last before.
-
-    At the end of what a paused host has sent, its instructions are let through until such a change.
-    """
+    """Go to the next instruction that changes a selected pixel, rectangle or entry, or to the last before."""
     session = pause(session)
-    selection, target, host = session.selection, session.target, session.host
+    selection, target = session.selection, session.target
     if selection is None:
         return tell(session, "drag a rectangle on the field, or click a pixel or an entry first")
     search = histories.last_change if back else histories.next_change
@@ -339,10 +259,6 @@ def next_change(session: Inspection, back: bool = False) -> Inspection:
     def found(session: Inspection, number: int | None) -> Inspection:
         if number is not None:
             return go(session, number)
-        if host is not None and not back:
-            values = selected_values(host.display, selection)
-            what = f"a change of {selection_text(selection)}"
-            return _awaiting(session, what, lambda: selected_values(host.display, selection) != values)
         where = "before" if back else "after"
         return tell(session, f"{selection_text(selection)}: no change {where} instruction {target:,}")
 
@@ -368,27 +284,13 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
         return session
 
     def found(session: Inspection, writes: Sequence[Write]) -> Inspection:
-        return replace(session, writes=tuple(reversed(writes)), message="")
+        return replace(session, writes=tuple(writes), message="")
 
     return _started(
         session,
         f"writes of {selection_text(selection)}",
         PendingSearch(histories.history_of(session.replay, selection, until), found),
     )
-
-
-def next_write(session: Inspection, back: bool) -> Inspection:
-    """Go to the next older, or newer, instruction of the history."""
-    if session.writes is None:
-        return tell(session, "click a pixel or an entry first")
-    numbers = [write.number for write in session.writes]
-    if back:
-        numbers = [number for number in numbers if number < session.number][:1]
-    else:
-        numbers = [number for number in numbers if number > session.number][-1:]
-    if numbers:
-        return go(session, numbers[0])
-    return tell(session, f"no {'earlier' if back else 'later'} instruction in the history")
 
 
 # What the user does.
@@ -416,11 +318,9 @@ def enter(session: Inspection, back: bool = False) -> Inspection:
 
 
 def escape(session: Inspection) -> Inspection:
-    """Leave what was begun last: a search, waiting, typing, a page, the selection."""
+    """Leave what was begun last: a search, going far, typing, a page, the selection."""
     if session.work is not None:
         return stopped(session)
-    if session.wanted or session.awaited is not None:
-        return replace(session, wanted=0, awaited=None, message=PAUSED)
     if session.number != session.target:
         first = _first_listed(session, session.number)
         return replace(session, target=session.number, first_listed=first, message="")
@@ -460,8 +360,15 @@ def click_listing(session: Inspection, row: int) -> Inspection:
 
 def click_history(session: Inspection, row: int) -> Inspection:
     """Go to the instruction in a row of the history."""
-    writes = (session.writes or ())[session.first_write :]
+    writes = shown_writes(session)
     return go(session, writes[row].number) if row < len(writes) else session
+
+
+def shown_writes(session: Inspection) -> Sequence[Write]:
+    """The writes in the rows of the history that are seen, newest first."""
+    writes = session.writes or ()
+    end = len(writes) - session.first_write
+    return writes[max(0, end - session.history_rows) : end][::-1]
 
 
 def shown_pixels(display: Ramtek9300) -> tuple[Any, Any]:
@@ -505,13 +412,6 @@ def value_text(name: str, value: Any) -> str:
     if isinstance(value, Window):
         return "{},{}..{},{}".format(*value)
     return ",".join(map(str, numbers))
-
-
-def selected_values(display: Ramtek9300, selection: Selection) -> bytes:
-    """The words of a window, or the colors of entries, to compare."""
-    if isinstance(selection, EntryRange):
-        return display.lookup_table.packed[selection.first : selection.end].tobytes()
-    return display.words[selection.top : selection.bottom + 1, selection.left : selection.right + 1].tobytes()
 
 
 def selection_text(selection: Selection) -> str:

@@ -1,7 +1,7 @@
-"""States: what displays are, packed into little memory; consecutive states share equal blocks.
+"""States: displays after some of the instructions of a stream, in little memory.
 
-A state is `Ramtek9300.state()`, pickled. Its arrays are cut into blocks. A block that equals the block of the
-state before is the same object, and the others are deflated.
+A state is `Ramtek9300.state()`, pickled. Its arrays are cut into blocks. If a block equals the block of the
+previous state, both states share the block. Other blocks are deflated.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Bytes, Words
+from ramtek_emu.arrays import Bytes
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.memory.scan_orders import Window
 
@@ -32,8 +32,6 @@ class State:
     """The pickled state without its arrays."""
     arrays: tuple[tuple[bytes, ...], ...] = field(repr=False)
     """The blocks of the arrays, deflated."""
-    reply: Words | None
-    """The reply of the last instruction; None if it is not known."""
     touched: Bytes | None = field(default=None, repr=False)
     """The words written since the state before, as `np.packbits(dots, axis=1)`; None if not known."""
 
@@ -58,9 +56,7 @@ class Packer:
         self._last: list[tuple[bytes, tuple[bytes, ...]]] = []
         """The arrays of the last state, whole and as deflated blocks."""
 
-    def pack(
-        self, display: Ramtek9300, number: int, reply: Words | None, touched: Bytes | None = None
-    ) -> State:
+    def pack(self, display: Ramtek9300, number: int, touched: Bytes | None = None) -> State:
         """The state of a display between two instructions."""
         buffers: list[pickle.PickleBuffer] = []
         data = pickle.dumps(display.state(), protocol=5, buffer_callback=buffers.append)
@@ -77,14 +73,14 @@ class Packer:
                 )
             packed.append(blocks)
         self._last = list(zip(arrays, packed, strict=True))
-        return State(number, data, tuple(packed), reply, touched)
+        return State(number, data, tuple(packed), touched)
 
 
 def size_of(states: list[State]) -> int:
     """The bytes of states; shared blocks count once."""
     blocks = {id(block): len(block) for state in states for array in state.arrays for block in array}
-    beside = (array for state in states for array in (state.reply, state.touched) if array is not None)
-    return sum(blocks.values()) + sum(len(state.data) for state in states) + sum(a.nbytes for a in beside)
+    beside = (len(state.data) + (0 if state.touched is None else state.touched.nbytes) for state in states)
+    return sum(blocks.values()) + sum(beside)
 
 
 def thinned(states: list[State]) -> list[State]:

@@ -66,6 +66,13 @@ REFUSED = (
         "Error: Invalid value for '--who': a pixel must be two numbers with , between them, not '5'",
     ),
     ("inspect - --range 1..2", 2, "Error: a range must have an output; add -o OUT"),
+    (
+        "inspect - --range 3..2 -o a",
+        2,
+        "Error: a range must begin at instruction 1 or later and not end before",
+    ),
+    ("inspect - --range 0..0 -o a", 2, "Error: a range must begin at instruction 1 or later"),
+    ("inspect - --range 1..1 --at 1 -o a", 2, "Error: a stream must be asked for --at or --range, not both"),
     ("inspect - --who-entry 1024", 2, "Error: an entry must be 0 to 1023, not 1024"),
     ("inspect empty --at 1", 2, "Error: an instruction must be 0 to 0, not 1 (empty)"),
     ("serve", 2, "Error: a display must be served on one of --port, --unix and --stdio; give one of them"),

@@ -109,6 +109,7 @@ def test_the_number_of_an_instruction_is_its_line_in_a_listing_in_json() -> None
     moment = run_json("inspect", "-", "--at", "3", data=DATA)
     assert (moment["number"], moment["instruction"]["name"]) == (3, "SET")
     assert (moment["foreground"], moment["background"]) == (4, 0)
+    assert "whole_word" not in moment
     assert run_json("inspect", "-", "--at", "0", data=DATA)["instruction"] is None
 
 

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ramtek_emu import Configuration, Ramtek9300
+from ramtek_emu.host.server import HostSession
 from ramtek_emu.inspection import session as module
 from ramtek_emu.inspection.replay import Replay
-from ramtek_emu.inspection.running_host import RunningHost
+from ramtek_emu.inspection.running_host import RunningHost, recording_into, replay_from
 from ramtek_emu.inspection.session import Inspection, display_of, inspection_of
 from ramtek_emu.monitor.boxes import Line
 from tests.ramtek_emu.inspection.replays import replay_of
@@ -65,10 +66,10 @@ class Served:
     """A host session that a stopped display executes, its inspection, and the replies to its host."""
 
     def __init__(self, display: Ramtek9300) -> None:
-        self.host = RunningHost(display)
-        self.host_session = self.host.session
-        self.host.step = self.step
-        self.inspection = Steps(inspection_of(self.host.replay, self.host))
+        replay = replay_from(display)
+        self.host_session = HostSession(display, recording_into(replay))
+        self.host = RunningHost(self.host_session, replay, self.step)
+        self.inspection = Steps(inspection_of(replay, self.host))
         self.replies = b""
         self._waiting: Iterator[bytes] = iter(())
 
@@ -88,11 +89,3 @@ class Served:
             self.send(*streams)
         while self.host_session.unexecuted:
             self.inspection.tick()
-
-    def tick_until_still(self) -> None:
-        """Let the instructions through that the paused inspection waits for."""
-        session = self.inspection
-        while session.state.wanted or session.state.work or session.state.awaited:
-            session.tick()
-            if not self.host_session.unexecuted:
-                break

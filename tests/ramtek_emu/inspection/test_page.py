@@ -18,14 +18,15 @@ from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.page import EDGE, InspectorPage, PageLayout, layout_of
 from ramtek_emu.inspection.panels import PAUSE
-from ramtek_emu.inspection.running_host import RunningHost
+from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.session import inspection_of, selection_text, tell, turn_to
+from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import ADVANCE, BLACK, WHITE, PageBox
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.inspection.sessions import Steps, at_rest, session_of, text_of
+from tests.ramtek_emu.inspection.sessions import Served, Steps, at_rest, session_of, text_of
 from tests.ramtek_emu.strategies import SMALL
 
 BUTTONS = ("<", ">", "entries")
@@ -126,19 +127,23 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
         assert page.lines_changed_since(stamp) == ()
 
 
-def test_a_message_changes_only_its_lines() -> None:
+def test_a_message_and_the_pointer_change_only_their_lines() -> None:
     session = session_of(pattern(), configuration=CONFIGURATIONS["GMR_9300"])
     page = page_of(session)
     stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
-    page.session = tell(session.state, "a message")
-    status = page.layout.boxes["status"]
-    ((first, end),) = page.lines_changed_since(stamp)
-    assert status.top <= first < end <= status.top + status.height
+    for state, name in (
+        (tell(session.state, "a message"), "status"),
+        (replace(tell(session.state, "a message"), pointer=Point(5, 5)), "pixels"),
+    ):
+        page.session = state
+        box = page.layout.boxes[name]
+        ((first, end),) = page.lines_changed_since(stamp)
+        assert box.top <= first < end <= box.top + box.height
+        stamp = page.stamp
 
 
 def test_the_button_that_pauses_reads_go_on_while_the_host_waits() -> None:
-    host = RunningHost(Ramtek9300(SMALL))
-    session = Steps(inspection_of(host.replay, host))
+    session = Served(Ramtek9300(SMALL)).inspection
     layout = layout_of(13, 9, 2, ["<", PAUSE])
     page = InspectorPage(session.state, layout, ["<", PAUSE], [], "a page")
     pictures = []
@@ -250,8 +255,9 @@ def test_every_entry_has_its_cell(name: str) -> None:
 
 def test_rings_are_around_the_pixels_that_an_instruction_writes() -> None:
     box = instructions.erase((100, 50, 109, 59), 5)
-    session = session_of(box, box, configuration=CONFIGURATIONS["GMR_9300"])
-    session.go(2)
+    replay = Replay(Stream(words=np.concatenate((box, box))))
+    replay.go_to(2)
+    session = Steps(inspection_of(replay))
     page = page_of(session)
     page.blink_is_on = False
     colors = page.colors().astype(int).sum(axis=2)[:, :, np.newaxis]

@@ -44,7 +44,6 @@ def test_any_moment_equals_a_fresh_display(
             snapshot, reply = expected[number]
             assert replay.number == number
             assert snapshot_bytes(replay.display) == snapshot
-            assert replay.reply is not None
             assert replay.reply.tolist() == reply.tolist()
 
 
@@ -74,17 +73,23 @@ def test_a_running_display_is_noted_with_what_moved_beside_its_instructions(
             pending = np.concatenate((pending, np.array(words, np.uint16)))
             whole = Stream(SMALL, pending)
             sent, pending = np.split(pending, whole.ends[-1:])
-            replay.note(sent, display)
+            last, end = len(replay.stream), replay.stream.ends[-1]
+            replay.append(sent)
+            replay.note(display)
+            if replay.stream.ends[last] != end:
+                # A row of illegal words has grown.
+                del expected[last]
             expected[len(replay.stream)] = snapshot_bytes(display)
             if moves:
                 display.joystick.move_to(len(sent) % 13, 3)
                 display.joystick.press_enter()
-                replay.note(np.zeros(0, np.uint16), display, has_moved=True)
+                replay.note(display, has_moved=True)
                 expected[len(replay.stream)] = snapshot_bytes(display)
             if resets:
                 display.reset()
                 pending = np.zeros(0, np.uint16)
-                replay.note(instructions.reset(), display, has_moved=True)
+                replay.append(instructions.reset())
+                replay.note(display, has_moved=True)
                 expected[len(replay.stream)] = snapshot_bytes(display)
     for number in reversed(expected):
         replay.go_to(number)
@@ -135,11 +140,11 @@ def test_instructions_are_counted_as_the_listing_shows_them(
 def test_states_share_what_stayed_the_same() -> None:
     display, packer = Ramtek9300(), Packer()
     display.send(instructions.write_image(np.random.default_rng(1).integers(0, 1024, (480, 640))))
-    first = packer.pack(display, 0, None)
-    same = packer.pack(display, 1, None)
+    first = packer.pack(display, 0)
+    same = packer.pack(display, 1)
     assert all(one is other for one, other in zip(first.arrays, same.arrays, strict=True))
     display.send(instructions.erase((0, 100, 9, 109), 3))
-    second = packer.pack(display, 1, None)
+    second = packer.pack(display, 1)
     assert size_of([first]) > 300_000
     assert size_of([first, second]) - size_of([first]) < 60_000
 
