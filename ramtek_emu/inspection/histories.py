@@ -14,7 +14,6 @@ import numpy as np
 from ramtek_emu.arrays import AnyArray, Dots
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.replay import Replay
-from ramtek_emu.inspection.watching import watched, watched_table
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Window
 
@@ -106,18 +105,19 @@ def _changes(replay: Replay, selection: Selection, after: int, until: int) -> It
         # No other instruction changes entries, so only loads are executed.
         loads = np.flatnonzero(replay.stream.opcodes[after:until] == LOAD) + after + 1
         display = replay.display_at(after)
-        touched = watched_table(display).watch()[selection.first : selection.end]
-        colors = display.lookup_table.packed[selection.first : selection.end]
-        yield from _noted(display, touched, colors, _executed(replay, display, loads.tolist()))
+        table, part = display.lookup_table, slice(selection.first, selection.end)
+        written = table.touched = np.zeros(table.size, np.bool_)
+        numbers = _executed(replay, display, loads.tolist())
+        yield from _noted(display, written[part], table.packed[part], numbers)
         return
     for begin, end, may_write in replay.stretches(selection, after, until):
         if not may_write:
             yield None
             continue
         display = replay.display_at(begin)
-        touched = watched(display).watch(selection)
-        words = display.words[selection.top : selection.bottom + 1, selection.left : selection.right + 1]
-        yield from _noted(display, touched, words, replay.steps(display, begin, end))
+        touched = display.frame_buffer.touched = np.zeros(display.words.shape, np.bool_)
+        place = slice(selection.top, selection.bottom + 1), slice(selection.left, selection.right + 1)
+        yield from _noted(display, touched[place], display.words[place], replay.steps(display, begin, end))
 
 
 def _executed(replay: Replay, display: Ramtek9300, numbers: list[int]) -> Iterator[int]:

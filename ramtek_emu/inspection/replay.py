@@ -23,7 +23,6 @@ from ramtek_emu.arrays import Dots, Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.states import Packer, State, size_of, thinned
 from ramtek_emu.inspection.stream import Stream
-from ramtek_emu.inspection.watching import watched
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.memory.scan_orders import Window
 
@@ -96,7 +95,7 @@ class Replay:
         display = self.display_at(number)
         while number < len(self.stream):
             due = thread_time() + self._seconds
-            touched = watched(display).watch(display.frame_buffer.window)
+            touched = display.frame_buffer.touched = np.zeros(display.words.shape, np.bool_)
             for step in self.steps(display, number, len(self.stream)):
                 number = step
                 display.processor.clear_replies()
@@ -160,10 +159,11 @@ class Replay:
             self.number, self.reply, self.written = state.number, NO_WORDS, None
         if number > self.number:
             self._run(self.display, self.number, number - 1)
-            touched = watched(self.display).watch(self.display.frame_buffer.window)
+            written = self.display.frame_buffer.touched = np.zeros(self.display.words.shape, np.bool_)
             self.display.send(self.stream.words_between(number - 1, number))
-            self.number, self.reply, self.written = number, reply_of(self.display), touched.copy()
-            self.written.flags.writeable = False
+            self.display.frame_buffer.touched = None
+            written.flags.writeable = False
+            self.number, self.reply, self.written = number, reply_of(self.display), written
             if (state := self.state_before(number)).number == number:
                 # The joystick of a running display may have moved after the instruction.
                 state.restore(self.display)

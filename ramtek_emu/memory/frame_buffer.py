@@ -43,6 +43,8 @@ class FrameBuffer:
         self.words: Words = self._words.view()
         """The words, (lines, elements) uint16; a read-only view that stays current."""
         self.words.flags.writeable = False
+        self.touched: Dots | None = None
+        """(lines, elements) dots that writes make true, also where words stay the same; None for no dots."""
 
     def __repr__(self) -> str:
         lines, elements = self._words.shape
@@ -147,6 +149,8 @@ class FrameBuffer:
         if not seen.all():
             places = places[seen]
             words = words if isinstance(words, int) else words[seen]
+        if self.touched is not None:
+            self.touched.reshape(-1)[places] = True
         memory = self._words.reshape(-1)
         masked = np.uint16(words & mask) if isinstance(words, int) else words & np.uint16(mask)
         if mask != self._every_plane:
@@ -173,6 +177,9 @@ class FrameBuffer:
             part = part_of(place, clipped, order)
             block = block[part] if isinstance(block, np.ndarray) else block
             dots = None if dots is None else dots[part]
+        if self.touched is not None:
+            touched = self.touched[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
+            order.oriented(touched)[...] |= True if dots is None else dots
         if mask == self._every_plane and dots is None:
             # The common case: one pass that copies the words without the bits beyond the planes.
             if isinstance(block, np.ndarray):

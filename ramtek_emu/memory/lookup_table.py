@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ramtek_emu.arrays import Bytes, Colors, PackedColors, Words
+from ramtek_emu.arrays import Booleans, Bytes, Colors, PackedColors, Words
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 
@@ -33,6 +33,8 @@ class LookupTable:
         """The number of words of entries written since power-on; it never decreases."""
         self._last_range = 0, 0, 0
         """The last range written: the count `written` before it, its first entry, and the entry after it."""
+        self.touched: Booleans | None = None
+        """(entries,) dots that writes make true, also where colors stay the same; None for no dots."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
         # In this byte order, the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
@@ -112,6 +114,8 @@ class LookupTable:
 
     def _note(self, first: int, end: int, words: int) -> None:
         """Count the words written to a range of entries, and remember the range."""
+        if words and self.touched is not None:
+            self.touched[first:end] = True
         # Writing the same range repeatedly, as while a color is dragged, counts as one write.
         if words and self._last_range[1:] != (first, end):
             self._last_range = self.written, first, end
