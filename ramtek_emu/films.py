@@ -391,26 +391,20 @@ class TimedFilm:
         self._began = seconds
         self._milliseconds = 0
         """The time of the shown field, from the beginning."""
-        self._data = b""
 
     @property
     def fields(self) -> int:
         """The number of fields, with the field that is shown."""
-        return self._film.fields + (not self.has_ended)
+        return self._film.fields + 1
 
     @property
     def is_full(self) -> bool:
         """Whether a limit is reached: MOST_FIELDS or MOST_BYTES."""
-        return self.has_ended or self.fields >= MOST_FIELDS or self._file.tell() >= MOST_BYTES
-
-    @property
-    def has_ended(self) -> bool:
-        """Whether `end` was called."""
-        return bool(self._data)
+        return self.fields >= MOST_FIELDS or self._file.tell() >= MOST_BYTES
 
     def show(self, field: Colors, seconds: float) -> None:
         """Add a field that is shown from `seconds` on; a field that equals the shown field adds nothing."""
-        if not self.has_ended and not np.array_equal(field, self._shown):
+        if not np.array_equal(field, self._shown):
             self._encode_shown(seconds)
             self._shown = field
 
@@ -420,12 +414,9 @@ class TimedFilm:
         self._milliseconds = end
 
     def end(self, seconds: float) -> bytes:
-        """End the film at `seconds`, unless it has ended already; returns the bytes of its file."""
-        if not self.has_ended:
-            self._encode_shown(seconds)
-            self._film.end()
-            self._file.seek(AnimatedPng.COUNT_PLACE)
-            self._file.write(self._film.count())
-            self._data = self._file.getvalue()
-            self._file.close()
-        return self._data
+        """End the film at `seconds`; returns the bytes of its file."""
+        self._encode_shown(seconds)
+        self._film.end()
+        self._file.seek(AnimatedPng.COUNT_PLACE)
+        self._file.write(self._film.count())
+        return self._file.getvalue()

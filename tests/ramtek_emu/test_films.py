@@ -214,17 +214,15 @@ def test_a_timed_film_shows_each_field_for_its_time(
     film = TimedFilm(fields[0], start)
     for field, at in zip(fields[1:], times[1:-1], strict=True):
         film.show(field, at)
-    data = film.end(times[-1])
+    count, data = film.fields, film.end(times[-1])
     path = tmp_path_factory.mktemp("films") / "film.apng"
     path.write_bytes(data)
     changes = [n for n, f in enumerate(fields) if n == 0 or not np.array_equal(f, fields[n - 1])]
-    assert film.fields == len(changes)
+    assert count == len(changes)
     assert np.array_equal(decoded(path), [fields[number] for number in changes])
     spans = np.diff([*(times[number] for number in changes), times[-1]]) * 1000
     # Times are rounded to milliseconds, and long durations to the four digits that the format has.
     assert np.all(np.abs(durations_of(path) - spans) <= 2 + spans / 6553)
-    film.show(255 - fields[-1], times[-1] + 1)
-    assert film.end(times[-1] + 2) == data
 
 
 def test_no_duration_of_a_timed_film_is_too_long_for_the_format(tmp_path: Path) -> None:
@@ -246,8 +244,6 @@ def test_a_timed_film_is_full_at_its_limits(limit: str, monkeypatch: pytest.Monk
         full.append(film.is_full)
     # The data of a field are 1,800 bytes and more, and those of the field that is shown are not encoded yet.
     assert full == [False, True, True]
-    film.end(9.0)
-    assert film.is_full
 
 
 @pytest.mark.parametrize("suffix", FORMATS)

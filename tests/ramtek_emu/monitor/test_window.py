@@ -271,51 +271,28 @@ def test_closing_the_window_saves_the_recording(
     assert [path.name for path in tmp_path.iterdir()] == ["ramtek-0001.apng"]
 
 
-def test_a_recording_that_cannot_be_saved_waits_for_room(
+def test_a_recording_that_cannot_be_saved_goes_to_another_folder(
     monitor: Monitor,
     messages: list[str],
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monitor.screenshots = tmp_path / "later"
-    fields = [monitor.display.field()]
-    press(monitor, pygame.K_F3)
-    fields.append(show_load(monitor, 10))
-    press(monitor, *QUIT)
-    assert monitor.is_open
-    assert messages[0].endswith("; F3 tries again, and closing again saves the film elsewhere")
-    # The film has ended, and the window goes on.
-    show_load(monitor, 20)
-    press(monitor, pygame.K_F3)
-    assert messages[1].endswith("; F3 tries again")
-    monitor.caption = "RAMTEK"
-    assert title() == "RAMTEK - not saved"
-    monitor.screenshots.mkdir()
-    press(monitor, pygame.K_F3)
-    path = monitor.screenshots / "ramtek-0001.apng"
-    assert messages[2] == f"saved {path.resolve()}, 2 fields"
-    assert np.array_equal(decoded(path), fields)
-    press(monitor, pygame.K_F3)
-    monitor.screenshots = tmp_path / "never"
-    # Closing says once that the film goes elsewhere, also if F3 could not save it before.
-    elsewhere = tmp_path / "elsewhere"
+    monitor.screenshots, elsewhere = tmp_path / "never", tmp_path / "elsewhere"
     elsewhere.mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "full"))
     monkeypatch.setattr(Path, "home", lambda: elsewhere)
-    for is_open in (True, True, False):
-        press(monitor, *((pygame.K_F3,) if len(messages) == 3 else QUIT))
-        assert monitor.is_open == is_open
-    assert messages[4].endswith("closing again saves the film elsewhere")
-    path = elsewhere / "ramtek-0001.apng"
-    assert capsys.readouterr().err.endswith(f"saved {path.resolve()}, 1 field\n")
-    assert np.array_equal(decoded(path), [monitor.display.field()])
-    # Without any folder, the film is lost.
-    monitor.screenshots = monitor.screenshots / "never"
-    elsewhere.rename(tmp_path / "gone")
-    monitor.open()
+    fields = [monitor.display.field()]
     press(monitor, pygame.K_F3)
-    monitor.close()
+    fields.append(show_load(monitor, 10))
+    press(monitor, pygame.K_F3)
+    path = elsewhere / "ramtek-0001.apng"
+    assert messages[0].endswith(f"; saved {path.resolve()}, 2 fields")
+    assert np.array_equal(decoded(path), fields)
+    # Without any folder, the film is lost.
+    elsewhere.rename(tmp_path / "gone")
+    press(monitor, pygame.K_F3)
+    press(monitor, *QUIT)
     assert capsys.readouterr().err.endswith("the film is lost: no folder could take it\n")
 
 
