@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from string import digits
 from typing import Final, NamedTuple
 
 from ramtek_emu.errors import RamtekError
 from ramtek_emu.inspection import session as sessions
 from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.page import InspectorPage, layout_of
-from ramtek_emu.inspection.panels import PAUSE
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import Inspection, display_of, inspection_of
@@ -26,8 +26,6 @@ from ramtek_emu.monitor.window import LEFT, RIGHT, TICK_MILLISECONDS, Key, Monit
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.video.scan_out import turned
 from ramtek_emu.writing import PNG, write_numbered
-
-WHEEL_ROWS: Final = 3
 
 
 def inspect(replay: Replay, caption: str = "RAMTEK 9300") -> None:
@@ -54,7 +52,7 @@ class Inspector:
         sizes = display.configuration
         layout = layout_of(sizes.shown_elements, sizes.shown_lines, sizes.cursors, labels)
         rows = layout.boxes["listing"].rows - 1, layout.boxes["history"].rows - 1
-        session = sessions.with_rows(session, *rows)
+        session = replace(session, listing_rows=rows[0], history_rows=rows[1])
         self.page = InspectorPage(session, layout, labels, help_rows(is_live), caption)
         self._anchor, self._anchor_place = "", Point(0, 0)
         """The part of the page where the mouse went down, or "joystick", and the place; "" while it is up."""
@@ -95,16 +93,13 @@ class Inspector:
         if key.name in ("return", "enter"):
             self._do(sessions.enter, key.shift)
             return True
-        if session.prompt and key.name == "backspace":
-            self._do(sessions.ask, session.prompt, session.typed[:-1])
+        if session.typed is not None and key.name == "backspace":
+            self._do(sessions.ask, session.typed[:-1])
             return True
-        if not key.control and not key.alt and key.text:
-            if sessions.takes(session, key.text):
-                self._do(sessions.ask, session.prompt, session.typed + key.text)
-                return True
-            if key.text.isascii() and key.text.isdigit():
-                self._do(sessions.ask, "instruction", key.text)
-                return True
+        types = key.text.isprintable() and key.text != "" and not key.control and not key.alt
+        if types and (session.typed is not None or key.text in digits):
+            self._do(sessions.ask, (session.typed or "") + key.text)
+            return True
         name = f"{'shift ' if key.shift else ''}{'ctrl ' if key.control else ''}{key.name}"
         for binding in self.bindings:
             if name in binding.keys and not (key.repeated and binding.is_once):
@@ -120,8 +115,7 @@ class Inspector:
         is_left = pointer.button == LEFT
         if pointer.action.startswith("wheel"):
             steps = pointer.steps if pointer.action == "wheel down" else -pointer.steps
-            if part in WHEEL:
-                self._do(WHEEL[part], steps)
+            self._do(sessions.step, steps)
         elif (session.is_following and part == "stage" and not session.page) or self._anchor == "joystick":
             # The mouse is the joystick over the field, and beyond it while a button is down.
             on_field = page.field_place(place)
@@ -221,33 +215,30 @@ BINDINGS: Final = (
     KeyBinding(
         "Space", "pause the host, or let it go on", ("space",),
         lambda session: (sessions.pause if session.is_following else sessions.go_on)(session),
-        PAUSE, True, True,
+        "pause, go on", True, True,
     ),
     KeyBinding(
         "Home", "the start, before the first instruction", ("home",),
         lambda session: sessions.go(session, 0), "|<",
     ),
     KeyBinding("Page Up", "ten back", ("page up",), lambda session: sessions.step(session, -10), "-10"),
-    KeyBinding("Left, Up", "step back", ("left", "up"), lambda session: sessions.step(session, -1), "<"),
+    KeyBinding("Left, Up", "a step back", ("left", "up"), lambda session: sessions.step(session, -1), "<"),
     KeyBinding(
-        "Right, Down", "step on", ("right", "down"), lambda session: sessions.step(session, 1), ">"
+        "Right, Down", "a step on", ("right", "down"), lambda session: sessions.step(session, 1), ">"
     ),
     KeyBinding("Page Down", "ten on", ("page down",), lambda session: sessions.step(session, 10), "+10"),
     KeyBinding(
         "End", "the end of the stream", ("end",), lambda session: sessions.go(session, session.length), ">|"
     ),
     KeyBinding(
-        "0 to 9, G", "type an instruction's number, then Enter", ("g",),
-        lambda session: sessions.ask(session, "instruction"), "go to",
+        "0 to 9, F", "type an instruction's number, or a text such as FORE=7", ("f",), sessions.ask,
+        "go to, find",
     ),
+    KeyBinding("Enter", "go to the number, or to the next instruction with the text", (), sessions.enter),
+    KeyBinding("Shift+Enter", "the previous instruction with the text", (), sessions.enter),
+    KeyBinding("C", "the next change of the selection", ("c",), sessions.next_change, "change"),
     KeyBinding(
-        "F", "type a text of the listing, such as FORE=7 or WI WIN=", ("f",),
-        lambda session: sessions.ask(session, "text"), "find",
-    ),
-    KeyBinding("(Shift+) Enter", "the next instruction with the text, or the last before", (), sessions.find),
-    KeyBinding("C", "the next change of what is selected", ("c",), sessions.next_change, "change"),
-    KeyBinding(
-        "Shift+C", "the change before of what is selected", ("shift c",),
+        "Shift+C", "the previous change of the selection", ("shift c",),
         lambda session: sessions.next_change(session, back=True),
     ),
     KeyBinding(
@@ -256,23 +247,19 @@ BINDINGS: Final = (
     ),
     KeyBinding("F2", KEYS[1][1], ("f2",), turn_table, "table", True),
     KeyBinding("S", "save a numbered snapshot of the display", ("s",), save_snapshot, "snapshot", True),
-    KeyBinding("Esc", "stop, close the page, or clear the selection", ("escape",), sessions.escape),
+    KeyBinding("Esc", "stop a search, close the page, or clear the selection", ("escape",), sessions.escape),
     KeyBinding(
         "F1", "this help, and back", ("f1",), lambda session: sessions.turn_to(session, "help"), "help", True
     ),
 )  # fmt: skip
-WHEEL: Final[dict[str, Callable[[Inspection, int], Inspection]]] = {
-    "listing": lambda session, steps: sessions.scroll_listing(session, WHEEL_ROWS * steps),
-    "history": lambda session, steps: sessions.scroll_history(session, WHEEL_ROWS * steps),
-    "bar": sessions.step,
-}
-"""What the wheel does over a part of the page."""
-MOUSE_LIVE: Final = (("mouse, running", "over the field: the joystick; a click is ENTER"),)
+MOUSE_LIVE: Final = (("mouse, running", "over the field: the joystick, whose ENTER is the left button"),)
 MOUSE: Final = (
-    ("click a pixel", "its history; on the page of entries, an entry's"),
-    ("drag", "select a rectangle, or entries; right button: clear"),
-    ("click a row", "go to its instruction; the wheel scrolls"),
-    ("drag on the bar", "scrub over the stream"),
+    ("click", "select a pixel or an entry, and list its writes"),
+    ("drag", "select a rectangle or entries"),
+    ("right button", "clear the selection"),
+    ("click a row", "go to its instruction"),
+    ("drag on the bar", "go through the stream"),
+    ("wheel", "step"),
 )
 WINDOW_KEYS: Final = tuple(row for row in KEYS if row[0] in ("F3", "F10", "F11, Alt+Enter", "F12", "Ctrl+Q"))
 """The keys of every window that an inspector has, too."""

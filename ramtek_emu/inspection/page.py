@@ -132,11 +132,14 @@ class InspectorPage:
         self.layout = layout
         self.elements, self.lines = layout.elements, layout.lines
         self.blink_is_on = True
-        self._buttons, self._help_rows, self._title = buttons, help_rows, title
+        self._help_rows, self._title = help_rows, title
         self._pixels: PackedColors = np.full((self.lines, self.elements), BLACK, np.uint32)
         bottom = layout.bar.top - BUTTON_LINES - 9
         self._pixels[:bottom, layout.stage.width] = RAISED
         self._pixels[layout.stage.height, : layout.stage.width] = self._pixels[bottom] = RAISED
+        for box, text in zip(layout.buttons, buttons, strict=True):
+            box.of(self._pixels)[...] = RAISED
+            write_rows(box.of(self._pixels)[2:], [(Span(f" {text} "),)], RAISED)
         self._marked: tuple[int, bool] = (-1, True)
         """The current instruction, and the phase of the blinking when it was reached."""
         self._shown: dict[str, Any] = {}
@@ -211,9 +214,6 @@ class InspectorPage:
         )
         for name, rows in self._rows().items():
             self._part(name, layout.boxes[name], rows, partial(write_rows, rows=rows))
-        for number, (box, button) in enumerate(zip(layout.buttons, self._buttons, strict=True)):
-            text = panels.button_text(session, button)
-            self._part(f"button {number}", box, text, partial(draw_button, text=text))
         prepared = session.replay.prepared if is_preparing(session) else session.length
         numbers = session.length, prepared, session.target, session.number
         self._part("bar", layout.bar, (numbers, session.writes), partial(self._draw_bar, prepared=prepared))
@@ -344,9 +344,3 @@ class InspectorPage:
         )
         word = int(words[line, element])
         return display_of(self.session).scan_out.first_entry + word if word < len(self.table()) else None
-
-
-def draw_button(pixels: PackedColors, text: str) -> None:
-    """Draw a button with a text."""
-    pixels[...] = RAISED
-    write_rows(pixels[2:], [(Span(f" {text} "),)], RAISED)

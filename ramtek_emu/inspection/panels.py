@@ -13,13 +13,14 @@ from typing import Final
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.histories import EntryRange, Write
-from ramtek_emu.inspection.listing import meaning_of, rows_from
+from ramtek_emu.inspection.listing import meaning_of
 from ramtek_emu.inspection.session import (
     Inspection,
     display_of,
     is_preparing,
     parameter_texts,
     selection_text,
+    shown_rows,
     shown_writes,
 )
 from ramtek_emu.instruction_set.disassembler import WORDS_PER_LINE
@@ -28,8 +29,6 @@ from ramtek_emu.memory.scan_orders import Window
 from ramtek_emu.monitor.boxes import BLUE, GRAY, ORANGE, WHITE, YELLOW, Line, Span
 from ramtek_emu.video.view import PLAIN_VIEW, pixel_at, view_of
 
-PAUSE: Final = "pause"
-"""The button that pauses a host, or lets it go on."""
 MARKED: Final = 0x26405F
 """The background of the current instruction."""
 
@@ -48,8 +47,7 @@ def title(session: Inspection) -> Line:
 
 def listing(session: Inspection) -> list[Line]:
     """The instructions around the current instruction, which is marked."""
-    rows = rows_from(session.replay.stream, session.first_listed, session.listing_rows)
-    return [listed(session, row) for row in rows if row.start <= session.length]
+    return [listed(session, row) for row in shown_rows(session)]
 
 
 def listed(session: Inspection, row: range) -> Line:
@@ -224,10 +222,9 @@ def write_line(session: Inspection, write: Write) -> Line:
 
 def status(session: Inspection) -> Line:
     """The prompt, the message, or how far the preparation is."""
-    if session.prompt:
-        asked = "go to instruction" if session.prompt == "instruction" else "find, with Enter or Shift+Enter"
-        more = (Span(f"  {session.message}", ORANGE),) if session.message else ()
-        return Span(f"{asked}: ", YELLOW), Span(session.typed), Span("_", ORANGE), *more
+    if session.typed is not None:
+        prompt = Span("go to, or find with (Shift+) Enter: ", YELLOW), Span(session.typed), Span("_", ORANGE)
+        return (*prompt, Span(f"  {session.message}", ORANGE))
     if session.message:
         return (Span(session.message, ORANGE),)
     prepared = session.replay.prepared
@@ -238,26 +235,18 @@ def status(session: Inspection) -> Line:
     return ()
 
 
-def button_text(session: Inspection, button: str) -> str:
-    """The text of a button: "pause" reads "go on" while a host waits."""
-    return "go on" if button == PAUSE and not session.is_following else button
-
-
 def wrapped(lines: Iterable[str], width: int) -> Iterator[str]:
     """The lines of a listing; the meaning of the words is on lines of its own where it does not fit."""
     for line in lines:
+        if len(line) <= width:
+            yield line
+            continue
         place, _, rest = line.partition(":")
         words, text = rest[: 1 + 5 * WORDS_PER_LINE].strip(), rest[1 + 5 * WORDS_PER_LINE :].strip()
-        if not words and len(place) + 3 + len(text) <= width:
-            # Many data are listed without their words.
-            yield f"{place}:  {text}"
-        elif len(line) <= width:
-            yield line
-        else:
-            if words:
-                yield f"{place}: {words}"
-            first = "" if words else f"{place}: "
-            yield from textwrap.wrap(text, width, initial_indent=f"{first:7}", subsequent_indent=f"{'':7}")
+        if words:
+            yield f"{place}: {words}"
+        first = "" if words else f"{place}: "
+        yield from textwrap.wrap(text, width, initial_indent=f"{first:7}", subsequent_indent=f"{'':7}")
 
 
 def color_spans(color: int) -> Line:

@@ -10,8 +10,10 @@ Long work, such as the first pass over a stream or a search, is done in pieces b
 from __future__ import annotations
 
 import time
+from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -69,19 +71,14 @@ class Inspection:
     """The last instruction that `writes` may have."""
     page: str = ""
     """"help" or "entries" instead of the field; "" for the field."""
-    prompt: str = ""
-    """What is being typed: "instruction" or "text"; "" for nothing."""
-    typed: str = ""
+    typed: str | None = None
+    """The number or the text that is being typed."""
     text: str = ""
     """The text that was last searched for."""
     message: str = ""
     listing_rows: int = 20
     history_rows: int = 20
     """The rows of the listing and of the history that are seen."""
-    first_listed: int = 0
-    """The first instruction of the listing."""
-    first_write: int = 0
-    """The first row of the history."""
     before: Mapping[str, str] = field(default_factory=dict, compare=False)
     """The values of the parameters at the position before; empty while a display runs."""
 
@@ -120,18 +117,11 @@ def is_preparing(session: Inspection) -> bool:
     return session.host is None and session.replay.prepared < session.length
 
 
-def with_rows(session: Inspection, listing: int, history: int) -> Inspection:
-    """The inspection with so many rows of the listing and of the history on its page."""
-    session = replace(session, listing_rows=listing, history_rows=history)
-    return replace(session, first_listed=_first_listed(session, session.number))
-
-
 def go(session: Inspection, number: int) -> Inspection:
     """Go to an instruction: at once if states are prepared, otherwise as soon as they are."""
     session = stopped(pause(session))
     number = min(max(number, 0), session.length)
-    first = _first_listed(session, number)
-    return _arrived(replace(session, target=number, message="", first_listed=first))
+    return _arrived(replace(session, target=number, message=""))
 
 
 def step(session: Inspection, count: int) -> Inspection:
@@ -149,15 +139,6 @@ def _arrived(session: Inspection) -> Inspection:
     before = parameter_texts(replay.display)
     replay.go_to(number)
     return replace(session, number=number, before=before)
-
-
-def _first_listed(session: Inspection, number: int) -> int:
-    """The first instruction of a listing that shows an instruction with some neighbors."""
-    stream, rows = session.replay.stream, session.listing_rows
-    shown = rows_from(stream, session.first_listed, rows)
-    if len(shown) == rows and shown[3].start <= number < shown[-3].start:
-        return session.first_listed
-    return min(moved(stream, number, -(rows // 3)), moved(stream, len(stream), 1 - rows))
 
 
 # Work in pieces.
@@ -187,8 +168,7 @@ def _served(session: Inspection, host: RunningHost) -> Inspection:
 
 def _followed(session: Inspection) -> Inspection:
     """The inspection at the end of a stream that grows, without the replay, which follows in a pause."""
-    length = session.length
-    return replace(session, number=length, target=length, first_listed=_first_listed(session, length))
+    return replace(session, number=session.length, target=session.length)
 
 
 def pause(session: Inspection) -> Inspection:
@@ -231,7 +211,7 @@ def stopped(session: Inspection) -> Inspection:
 
 def find(session: Inspection, back: bool = False) -> Inspection:
     """Go to the next instruction whose row of the listing has the typed text, or to the last one before."""
-    text = session.typed.strip() if session.prompt == "text" and session.typed.strip() else session.text
+    text = (session.typed or "").strip() or session.text
     session = replace(pause(session), text=text)
     if not text:
         return tell(session, "type a text of the listing first, such as FORE=7 or WI WIN=")
@@ -270,7 +250,7 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
 
     If the selection is final, the history of a single pixel or entry is searched for.
     """
-    session = replace(stopped(session), selection=selection, writes=None, first_write=0, message="")
+    session = replace(stopped(session), selection=selection, writes=None, message="")
     if not is_final or selection is None:
         return session
     session = pause(session)
@@ -296,25 +276,17 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
 # What the user does.
 
 
-def takes(session: Inspection, text: str) -> bool:
-    """Whether the prompt takes a character: digits for an instruction, all for a text of the listing."""
-    if session.prompt == "instruction":
-        return text.isascii() and text.isdigit()
-    return session.prompt == "text" and text.isprintable() and text != ""
-
-
-def ask(session: Inspection, prompt: str, typed: str = "") -> Inspection:
-    """Begin, or go on, to type an instruction's number or a text."""
-    return replace(session, prompt=prompt, typed=typed[:MOST_TYPED], message="")
+def ask(session: Inspection, typed: str = "") -> Inspection:
+    """Begin, or go on, to type an instruction's number or a text of the listing."""
+    return replace(session, typed=typed[:MOST_TYPED], message="")
 
 
 def enter(session: Inspection, back: bool = False) -> Inspection:
-    """Go to the instruction that was typed; else find the text, whose prompt stays."""
-    if session.prompt != "instruction":
-        return find(session, back)
-    typed = session.typed
-    session = replace(session, prompt="", typed="")
-    return go(session, int(typed)) if typed else session
+    """Go to the instruction whose number was typed; else find the text, and stay at typing."""
+    typed = session.typed or ""
+    if typed.isascii() and typed.isdigit():
+        return go(replace(session, typed=None), int(typed))
+    return find(session, back)
 
 
 def escape(session: Inspection) -> Inspection:
@@ -322,10 +294,9 @@ def escape(session: Inspection) -> Inspection:
     if session.work is not None:
         return stopped(session)
     if session.number != session.target:
-        first = _first_listed(session, session.number)
-        return replace(session, target=session.number, first_listed=first, message="")
-    if session.prompt:
-        return replace(session, prompt="", typed="", message="")
+        return replace(session, target=session.number, message="")
+    if session.typed is not None:
+        return replace(session, typed=None, message="")
     return turn_to(session, session.page) if session.page else select(session, None)
 
 
@@ -339,22 +310,9 @@ def turn_to(session: Inspection, page: str) -> Inspection:
     return replace(session, page="" if session.page == page else page, pointed_entry=None, pointer=None)
 
 
-def scroll_listing(session: Inspection, rows: int) -> Inspection:
-    """Move the listing, and stay at the current instruction."""
-    stream = session.replay.stream
-    last = moved(stream, len(stream), 1 - session.listing_rows)
-    return replace(session, first_listed=min(moved(stream, session.first_listed, rows), last))
-
-
-def scroll_history(session: Inspection, rows: int) -> Inspection:
-    """Move the history."""
-    last = max(0, len(session.writes or ()) - session.history_rows)
-    return replace(session, first_write=min(max(0, session.first_write + rows), last))
-
-
 def click_listing(session: Inspection, row: int) -> Inspection:
     """Go to the instruction in a row of the listing."""
-    rows = rows_from(session.replay.stream, session.first_listed, row + 1)
+    rows = shown_rows(session)
     return go(session, rows[row].start) if row < len(rows) else session
 
 
@@ -364,11 +322,19 @@ def click_history(session: Inspection, row: int) -> Inspection:
     return go(session, writes[row].number) if row < len(writes) else session
 
 
+def shown_rows(session: Inspection) -> list[range]:
+    """The rows of the listing that are seen: around the instruction that is gone to."""
+    stream, rows = session.replay.stream, session.listing_rows
+    first = min(moved(stream, session.target, -(rows // 3)), moved(stream, len(stream), 1 - rows))
+    return rows_from(stream, first, rows)
+
+
 def shown_writes(session: Inspection) -> Sequence[Write]:
-    """The writes in the rows of the history that are seen, newest first."""
-    writes = session.writes or ()
-    end = len(writes) - session.first_write
-    return writes[max(0, end - session.history_rows) : end][::-1]
+    """The writes in the rows of the history that are seen, newest first: around the current instruction."""
+    writes, rows = session.writes or (), session.history_rows
+    done = bisect_right(writes, session.number, key=attrgetter("number"))
+    end = min(len(writes), max(rows, done + rows // 3))
+    return writes[max(0, end - rows) : end][::-1]
 
 
 def shown_pixels(display: Ramtek9300) -> tuple[Any, Any]:

@@ -80,7 +80,7 @@ def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: p
             served.send(instructions.write_image(picture))
         session.tick()
     state = session.state
-    assert (state.number, state.target, state.length, state.first_listed) == (0, 0, 0, 0)
+    assert (state.number, state.target, state.length) == (0, 0, 0)
     assert state.message.endswith("MB of memory: they are counted from here on")
     served.execute()
     # The instructions are counted anew, and the past begins with the picture as it was.

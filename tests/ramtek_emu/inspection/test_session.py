@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -33,7 +34,6 @@ STEPS = st.one_of(
     st.tuples(st.just("select"), st.builds(lambda n: EntryRange(n, n + 1), st.integers(0, 1023))),
     st.tuples(st.just("click_history"), st.integers(0, 3)),
     st.tuples(st.just("click_listing"), st.integers(0, 30)),
-    st.tuples(st.just("scroll_listing"), st.integers(-30, 30)),
 )
 
 
@@ -129,7 +129,7 @@ def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None
 
 def test_a_text_of_the_listing_is_found_forward_and_back() -> None:
     session = session_of(*BOXES_STREAM)
-    session.ask("text", "ers")
+    session.ask("ers")
     numbers = []
     for back in (False, False, False, False, True, True, True):
         session.enter(back)
@@ -137,14 +137,14 @@ def test_a_text_of_the_listing_is_found_forward_and_back() -> None:
     assert numbers == [1, 3, 4, 4, 3, 1, 1]
     assert session.state.message == "no ers before instruction 1"
     for text, number in (("ERS BACK=7", 3), ("ERS WIN=", 4), ("LAM", 5), ("BACK=", 5), ("WI WIN=", 5)):
-        session.ask("text", text)
+        session.ask(text)
         session.find()
         assert at_rest(session).state.number == number, text
 
 
 def test_a_text_is_found_in_the_whole_listing_of_an_instruction() -> None:
     session = session_of(instructions.write_image(np.arange(117).reshape(9, 13)))
-    session.ask("text", "0074")
+    session.ask("0074")
     session.find()
     assert at_rest(session).state.number == 1
 
@@ -201,8 +201,8 @@ def test_the_change_before_is_the_last_of_all_changes_until_then(words: list[int
 
 def test_a_typed_number_is_gone_to() -> None:
     session = session_of(*BOXES_STREAM)
-    session.ask("instruction", "3")
-    assert text_of(panels.status(session.state)) == "go to instruction: 3_"
+    session.ask("3")
+    assert text_of(panels.status(session.state)) == "go to, or find with (Shift+) Enter: 3_  "
     session.enter()
     assert session.state.number == 3
 
@@ -211,12 +211,12 @@ def test_escape_leaves_what_was_begun_last() -> None:
     session = session_of(*BOXES_STREAM)
     session.select(Window(1, 1, 2, 2))
     session.turn_to("entries")
-    session.ask("text")
+    session.ask()
     left = []
     for _ in range(3):
         session.escape()
-        left.append((session.state.prompt, session.state.page, session.state.selection is None))
-    assert left == [("", "entries", False), ("", "", False), ("", "", True)]
+        left.append((session.state.typed, session.state.page, session.state.selection is None))
+    assert left == [(None, "entries", False), (None, "", False), (None, "", True)]
 
 
 @pytest.fixture
@@ -251,9 +251,9 @@ def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_co
 def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_shown(
     far: Steps,
 ) -> None:
-    assert far.state.first_listed > 0
+    assert module.shown_rows(far.state)[0].start > 0
     far.escape()
-    assert (far.state.number, far.state.target, far.state.first_listed) == (0, 0, 0)
+    assert (far.state.number, far.state.target, module.shown_rows(far.state)[0].start) == (0, 0, 0)
 
 
 def test_stepping_needs_no_prepared_states() -> None:
@@ -275,28 +275,26 @@ def test_a_rectangle_of_the_screen_is_one_of_the_memory() -> None:
     assert memory_window(session.display, *places) == (4, 4, 5, 5)
 
 
-def test_lists_show_what_is_left_when_one_row_more_than_fits_is_there() -> None:
-    session = session_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 6))
-    session.with_rows(6, 5)
-    session.go(6)
+def test_lists_show_the_rows_around_the_current_instruction() -> None:
+    session = session_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 8))
+    session.state = replace(session.state, listing_rows=6, history_rows=5)
+    session.go(8)
     session.select(Window(1, 1, 1, 1))
     at_rest(session)
     seen = []
-    for rows in (-9, 0, 1, 9):
-        session.scroll_listing(rows)
-        session.scroll_history(rows)
+    for number in (8, 6, 5, 3, 0):
+        session.go(number)
         listed = [int(text_of(line)[1:].split()[0]) for line in panels.listing(session.state)]
         history = [int(text_of(line)[1:].split()[0]) for line in panels.history(session.state)]
-        seen.append((listed, history))
-    first, second = ([*range(6)], [6, 5, 4, 3, 2]), ([*range(1, 7)], [5, 4, 3, 2, 1])
-    assert seen == [first, first, second, second]
+        assert (len(listed), len(history)) == (6, 5)
+        seen.append((listed[0], history[0]))
+    assert seen == [(3, 8), (3, 7), (3, 6), (1, 5), (0, 5)]
     # The rows that are clicked are those that are seen; a row below the last is none.
     numbers = []
     for click, row in ((session.click_history, 4), (session.click_listing, 6), (session.click_listing, 2)):
         click(row)
-        session.scroll_listing(9)
         numbers.append(session.state.number)
-    assert numbers == [1, 1, 3]
+    assert numbers == [1, 1, 2]
 
 
 # Running displays.
