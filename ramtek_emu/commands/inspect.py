@@ -1,4 +1,4 @@
-"""`ramtek inspect`: a stream at any of its instructions, and who wrote a pixel or an entry."""
+"""`ramtek inspect`: a stream at any of its instructions, and who wrote a pixel."""
 
 from __future__ import annotations
 
@@ -31,7 +31,6 @@ Examples:
   ramtek inspect drawing.ramtek --at 120 --snapshot s.png  the display after 120 instructions, to go on with
   ramtek inspect drawing.ramtek --range 80..120 -o part    the words of instructions 80 to 120
   ramtek inspect drawing.ramtek --who 150,200              the instructions that wrote element 150, line 200
-  ramtek inspect drawing.ramtek --who-entry 7 --json       the table loads that wrote entry 7
 """
 
 
@@ -81,12 +80,6 @@ class NumberPair(click.ParamType[tuple[int, int]]):
     help="List the instructions that wrote a word of the memory, the newest first.",
 )
 @click.option(
-    "--who-entry",
-    type=click.IntRange(min=0),
-    metavar="ENTRY",
-    help="List the instructions that wrote an entry of the lookup table.",
-)
-@click.option(
     "--json",
     "as_json",
     is_flag=True,
@@ -103,7 +96,6 @@ def inspect(
     snapshot: str | None,
     numbers: tuple[int, int] | None,
     who: tuple[int, int] | None,
-    who_entry: int | None,
     as_json: bool,
     force: bool,
     configuration: str | None,
@@ -114,8 +106,6 @@ def inspect(
 
     It opens a window, unless a picture, a question or JSON is asked for.
     """
-    if who is not None and who_entry is not None:
-        raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
     if numbers is not None:
         refuse_range(numbers, at, output)
     refuse_outputs(force, *([output] if numbers else ()), pictures=[snapshot, None if numbers else output])
@@ -126,17 +116,18 @@ def inspect(
     sizes = display.configuration
     refuse_outside("an element", None if who is None else who[0], sizes.elements - 1)
     refuse_outside("a line", None if who is None else who[1], sizes.lines - 1)
-    refuse_outside("an entry", who_entry, sizes.entries - 1)
     replay = Replay(read_stream(stream, sizes), display)
     last = len(replay.stream)
     refuse_outside("an instruction", at, last, stream)
     refuse_outside("an instruction", None if numbers is None else numbers[1], last, stream)
-    asks = who is not None or who_entry is not None
-    if output is None and snapshot is None and not asks and not as_json:
-        from ramtek_emu.inspection.inspector import inspect
+    if output is None and snapshot is None and who is None and not as_json:
+        from ramtek_emu.inspection import inspector
+        from ramtek_emu.inspection.session import inspection_of
 
         replay.go_to(0 if at is None else at)
-        inspect(replay, f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}")
+        inspector.inspect(
+            inspection_of(replay), f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}"
+        )
         return
     number = last if at is None else at
     if numbers is not None and output is not None:
@@ -153,8 +144,8 @@ def inspect(
         replay.go_to(number)
         write_snapshot(replay.display, snapshot, overwrite=force)
         tell(f"wrote {snapshot}")
-    if asks:
-        answer(replay, who, who_entry, number, as_json)
+    if who is not None:
+        answer(replay, who, number, as_json)
     elif as_json:
         replay.go_to(number)
         click.echo(json.dumps(plain_moment(replay)))
@@ -180,27 +171,21 @@ def refuse_outside(thing: str, value: int | None, most: int, place: str = "") ->
         raise click.UsageError(f"{thing} must be 0 to {most}, not {value}{where}; choose a smaller number")
 
 
-def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until: int, as_json: bool) -> None:
-    """Print the instructions that wrote a word or an entry, the newest first."""
-    from ramtek_emu.inspection.histories import EntryRange, finished, history_of
+def answer(replay: Replay, pixel: tuple[int, int], until: int, as_json: bool) -> None:
+    """Print the instructions that wrote a word of the memory, the newest first."""
+    from ramtek_emu.inspection.histories import finished, history_of
     from ramtek_emu.memory.scan_orders import Window
 
-    selection: Window | EntryRange
-    if who is not None:
-        selection, thing = Window(*who, *who), f"element {who[0]}, line {who[1]}"
-    else:
-        selection, thing = EntryRange(entry or 0, (entry or 0) + 1), f"entry {entry}"
-    writes = finished(history_of(replay, selection, until))[::-1]
+    writes = finished(history_of(replay, Window(*pixel, *pixel), until))[::-1]
     if as_json:
         rows = (json.dumps(plain_write(replay, write)) for write in writes)
         click.echo("[" + ",\n ".join(rows) + "]")
         return
-    form = "04X" if who is not None else "06X"
     for write in writes:
         listed = next(replay.stream.item(write.number).lines())
-        click.echo(f"{write.number:>8}  {write.before:{form}} -> {write.after:{form}}  {listed}")
+        click.echo(f"{write.number:>8}  {write.before:04X} -> {write.after:04X}  {listed}")
     if not writes:
-        tell(f"none of the first {until} instructions writes {thing}")
+        tell(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")
 
 
 def plain_write(replay: Replay, write: Write) -> dict[str, Any]:

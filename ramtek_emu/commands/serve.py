@@ -177,11 +177,13 @@ def watch(
 ) -> None:
     """Show the display in a window, or in that of an inspector, until it is closed or a signal ends it."""
     if inspected is not None:
-        from ramtek_emu.inspection.inspector import inspect_host
+        from ramtek_emu.inspection.inspector import inspect
         from ramtek_emu.inspection.running_host import RunningHost
+        from ramtek_emu.inspection.session import inspection_of
 
         host = RunningHost(session, inspected, step, is_busy, obey or (lambda: None))
-        inspect_host(host, f"RAMTEK {session.display.configuration.name.replace('_', ' ')}", lambda: run.ends)
+        name = session.display.configuration.name.replace("_", " ")
+        inspect(inspection_of(inspected, host), f"RAMTEK {name}", lambda: run.ends)
         return
 
     def obey_and_serve_for(seconds: float) -> None:

@@ -17,9 +17,7 @@ from ramtek_emu.errors import RamtekError
 from ramtek_emu.inspection import session as sessions
 from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.page import InspectorPage, layout_of
-from ramtek_emu.inspection.replay import Replay
-from ramtek_emu.inspection.running_host import RunningHost
-from ramtek_emu.inspection.session import Inspection, display_of, inspection_of
+from ramtek_emu.inspection.session import Inspection, display_of
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.overlay import KEYS
 from ramtek_emu.monitor.window import LEFT, RIGHT, TICK_MILLISECONDS, Key, Monitor, Pointer
@@ -28,17 +26,16 @@ from ramtek_emu.video.scan_out import turned
 from ramtek_emu.writing import PNG, write_numbered
 
 
-def inspect(replay: Replay, caption: str = "RAMTEK 9300") -> None:
-    """Open a window in which the instructions of a replay are inspected, until it is closed.
-
-    NoScreenError if there is no screen.
-    """
-    Inspector(inspection_of(replay), caption).run()
-
-
-def inspect_host(host: RunningHost, caption: str, ends: Callable[[], bool]) -> None:
-    """Follow a running display in a window, until it is closed or `ends()` is true; NoScreenError."""
-    Inspector(inspection_of(host.replay, host), caption).run(ends)
+def inspect(session: Inspection, caption: str, ends: Callable[[], bool] = lambda: False) -> None:
+    """Open a window of an inspection until it is closed, or until `ends()` is true; NoScreenError."""
+    inspector = Inspector(session, caption)
+    monitor = inspector.monitor
+    monitor.open()
+    try:
+        while monitor.is_open and not ends():
+            monitor.step(0 if sessions.is_busy(inspector.session) else TICK_MILLISECONDS)
+    finally:
+        monitor.close()
 
 
 class Inspector:
@@ -74,16 +71,6 @@ class Inspector:
     def _do(self, action: Callable[..., Inspection], *values: object) -> None:
         """Show the inspection after an action."""
         self.page.session = action(self.page.session, *values)
-
-    def run(self, ends: Callable[[], bool] = lambda: False) -> None:
-        """Keep the window open until it is closed, or until `ends()` is true."""
-        monitor = self.monitor
-        monitor.open()
-        try:
-            while monitor.is_open and not ends():
-                monitor.step(0 if sessions.is_busy(self.session) else TICK_MILLISECONDS)
-        finally:
-            monitor.close()
 
     def press(self, key: Key) -> bool:
         """Handle a key; returns whether it means something here."""

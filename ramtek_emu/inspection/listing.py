@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -23,7 +24,17 @@ POLLS: Final = frozenset(format.opcode for format in FORMATS if format.meaning.s
 """The opcodes of instructions that read."""
 
 
-def meaning_of(stream: Stream, number: int, most: int = LONGEST_MEANING) -> str:
+def meaning_of(stream: Stream, number: int) -> str:
+    """The right side of an instruction's listing in one line, cut after LONGEST_MEANING characters."""
+    return _meaning(stream, number, int(stream.ends[number]))
+
+
+@lru_cache(256)
+def _meaning(stream: Stream, number: int, _: int) -> str:
+    return whole_meaning_of(stream, number, LONGEST_MEANING)
+
+
+def whole_meaning_of(stream: Stream, number: int, most: int = sys.maxsize) -> str:
     """The right side of an instruction's listing in one line, cut after `most` characters."""
     item = stream.item(number)
     if item.instruction is None:
@@ -99,7 +110,7 @@ def next_with(stream: Stream, text: str, numbers: Iterable[int]) -> Search[int |
     """The first of some instructions whose whole listing has a text; None if there is none."""
     pattern = pattern_of(text)
     for number in numbers:
-        if pattern.search(meaning_of(stream, number, sys.maxsize)):
+        if pattern.search(whole_meaning_of(stream, number)):
             return number
         yield
     return None

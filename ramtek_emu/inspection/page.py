@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from operator import attrgetter
 from typing import Any, Final, NamedTuple, cast
@@ -144,8 +143,6 @@ class InspectorPage:
         """The current instruction, and the phase of the blinking when it was reached."""
         self._shown: dict[str, Any] = {}
         """What the parts of the page show."""
-        self._listed: tuple[Any, dict[str, Sequence[Line]]] = None, {}
-        """The panels that list instructions, and what they were made from."""
         self._drawn: Any = None
         self._before: Any = None
         self._changed: list[Run] = []
@@ -230,16 +227,12 @@ class InspectorPage:
     def _rows(self) -> dict[str, Sequence[Line]]:
         """The rows of the panels."""
         session, boxes = self.session, self.layout.boxes
-        # A move of the mouse lists no instruction again.
-        key = replace(session, pointer=None, pointed_entry=None), len(session.replay.stream.words)
-        if key != self._listed[0]:
-            words = panels.words_of_the_instruction(session, boxes["words"].rows - 1, SIDE_CHARACTERS)
-            history = [panels.history_title(session), *panels.history(session)]
-            self._listed = key, {"listing": panels.listing(session), "words": words, "history": history}
-        rows = self._listed[1] | {
-            "listing": [panels.title(session), *self._listed[1]["listing"]],
+        rows: dict[str, Sequence[Line]] = {
+            "listing": [panels.title(session), *panels.listing(session)],
+            "words": panels.words_of_the_instruction(session, boxes["words"].rows - 1, SIDE_CHARACTERS),
             "cursors": panels.cursors(session),
             "pixels": panels.pixels(session),
+            "history": [panels.history_title(session), *panels.history(session)],
             "status": [panels.status(session)],
         }
         parameters, height = panels.parameters(session), boxes["parameters 0"].rows

@@ -217,32 +217,29 @@ def find(session: Inspection, back: bool = False) -> Inspection:
         return tell(session, "type a text of the listing first, such as FORE=7 or WI WIN=")
     target, stream = session.target, session.replay.stream
     numbers = range(target - 1, 0, -1) if back else range(target + 1, session.length + 1)
-
-    def found(session: Inspection, number: int | None) -> Inspection:
-        if number is not None:
-            return go(session, number)
-        where = "before" if back else "after"
-        return tell(session, f"no {text} {where} instruction {target:,}")
-
-    return _started(session, text, PendingSearch(next_with(stream, text, numbers), found))
+    return _going_to_found(session, text, next_with(stream, text, numbers), back)
 
 
 def next_change(session: Inspection, back: bool = False) -> Inspection:
     """Go to the next instruction that changes a selected pixel, rectangle or entry, or to the last before."""
     session = pause(session)
-    selection, target = session.selection, session.target
-    if selection is None:
+    if session.selection is None:
         return tell(session, "drag a rectangle on the field, or click a pixel or an entry first")
     search = histories.last_change if back else histories.next_change
-    changes = search(session.replay, selection, target)
+    changes = search(session.replay, session.selection, session.target)
+    return _going_to_found(session, f"change of {selection_text(session.selection)}", changes, back)
+
+
+def _going_to_found(session: Inspection, what: str, search: Search[int | None], back: bool) -> Inspection:
+    """Search for an instruction from the current instruction on, and go there."""
+    target = session.target
 
     def found(session: Inspection, number: int | None) -> Inspection:
         if number is not None:
             return go(session, number)
-        where = "before" if back else "after"
-        return tell(session, f"{selection_text(selection)}: no change {where} instruction {target:,}")
+        return tell(session, f"no {what} {'before' if back else 'after'} instruction {target:,}")
 
-    return _started(session, f"a change of {selection_text(selection)}", PendingSearch(changes, found))
+    return _started(session, what, PendingSearch(search, found))
 
 
 def select(session: Inspection, selection: Selection | None, is_final: bool = True) -> Inspection:
@@ -254,8 +251,7 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
     if not is_final or selection is None:
         return session
     session = pause(session)
-    until = session.target
-    session = replace(session, writes_until=until)
+    session = replace(session, writes_until=session.target)
     if isinstance(selection, EntryRange):
         size = selection.end - selection.first
     else:
@@ -266,11 +262,8 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
     def found(session: Inspection, writes: Sequence[Write]) -> Inspection:
         return replace(session, writes=tuple(writes), message="")
 
-    return _started(
-        session,
-        f"writes of {selection_text(selection)}",
-        PendingSearch(histories.history_of(session.replay, selection, until), found),
-    )
+    search = histories.history_of(session.replay, selection, session.target)
+    return _started(session, f"writes of {selection_text(selection)}", PendingSearch(search, found))
 
 
 # What the user does.

@@ -216,5 +216,6 @@ def test_the_window_shows_the_page_after_keys_and_clicks(on_screen: str) -> None
     assert np.array_equal(shown(), page.colors())
     event = pygame.event.Event(pygame.KEYDOWN, key=pygame.K_q, unicode="\x11", mod=pygame.KMOD_LCTRL)
     pygame.event.post(event)
-    opened.run()
+    while monitor.step(5):
+        pass
     assert not monitor.is_open

@@ -113,7 +113,7 @@ def test_the_history_of_an_entry_shows_its_colors() -> None:
     for _ in range(2):
         session.next_change()
         assert at_rest(session).state.number == 5
-    assert session.state.message == "entry 5: no change after instruction 5"
+    assert session.state.message == "no change of entry 5 after instruction 5"
 
 
 def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None:
@@ -121,7 +121,7 @@ def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None
     session.select(Window(8, 4, 9, 6))
     session.go(1)
     session.next_change()
-    assert at_rest(session).state.message == "rectangle 8,4..9,6: no change after instruction 1"
+    assert at_rest(session).state.message == "no change of rectangle 8,4..9,6 after instruction 1"
     session.select(Window(2, 2, 2, 2))
     session.next_change()
     assert at_rest(session).state.number == 3
