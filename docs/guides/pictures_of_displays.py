@@ -235,7 +235,7 @@ def inspect_pixel() -> Field:
     inspector = Inspector(inspection_of(Replay(Stream(words=words.astype(np.uint16)))))
     inspector.press(Key("end"))
     for action in ("move", "press", "release"):
-        inspector.point(Pointer(502, 302, False, action, 0 if action == "move" else 1))
+        inspector.point(Pointer(502, 302, action, 0 if action == "move" else 1))
     inspector.press(Key("left"))
     while is_busy(inspector.session):
         inspector.page.session = tick(inspector.session)

@@ -287,7 +287,7 @@ class Glass:
         element, line = pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)
         down = pygame.key.get_mods()
         shift, control = bool(down & pygame.KMOD_SHIFT), bool(down & CONTROL)
-        return Pointer(element, line, False, action, button, steps, shift, control)
+        return Pointer(element, line, action, button, steps, shift, control)
 
 
 class Viewport(NamedTuple):

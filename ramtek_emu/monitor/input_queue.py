@@ -42,8 +42,6 @@ class Pointer(NamedTuple):
 
     element: int
     line: int
-    enter: bool
-    """Whether the left button is down; set when the input is handled."""
     action: str
     """"move", "press", "release", "wheel up" or "wheel down"."""
     button: int = 0

@@ -98,7 +98,6 @@ class Monitor:
         self.input = InputQueue()
         self.overlay = Overlay()
         """The page and the message over the field."""
-        self._enter = False
         self._film: TimedFilm | None = None
         """The film that is recorded."""
         self.refreshed = 0
@@ -337,12 +336,10 @@ class Monitor:
 
     def handle_pointer(self, pointer: Pointer) -> None:
         """Move the joystick and set its switches, unless a program's page is shown; call `on_pointer`."""
-        if pointer.button == LEFT:
-            self._enter = pointer.action == "press"
         if self._source is None:
             self.steer(pointer)
         if self.on_pointer is not None:
-            self.on_pointer(pointer._replace(enter=self._enter))
+            self.on_pointer(pointer)
 
     def steer(self, pointer: Pointer) -> None:
         """Move the joystick to a place of the display's field, and set its switches by the buttons."""

@@ -44,7 +44,7 @@ def press(inspector: Inspector, *names: str) -> Inspector:
 def point(inspector: Inspector, *actions: tuple[str, int, int]) -> Inspector:
     """The mouse at places of the page: "press", "move", "release" of the left button."""
     for action, element, line in actions:
-        inspector.point(Pointer(element + EDGE, line + EDGE, False, action, 0 if action == "move" else 1))
+        inspector.point(Pointer(element + EDGE, line + EDGE, action, 0 if action == "move" else 1))
     return at_rest(inspector)
 
 
@@ -111,7 +111,7 @@ def test_a_rectangle_is_dragged_and_its_changes_are_found() -> None:
     assert inspector.session.selection == (240, 210, 290, 240)
     numbers = [press(inspector, "c").session.number for _ in range(3)]
     assert numbers == [1, 1, 1]
-    inspector.point(Pointer(5, 5, False, "press", 3))
+    inspector.point(Pointer(5, 5, "press", 3))
     assert inspector.session.selection is None
 
 
@@ -129,11 +129,11 @@ def test_the_bar_is_dragged_over_the_whole_stream() -> None:
     inspector = inspector_of(OUTLINE)
     bar, last = inspector.page.layout.bar, len(inspector.session.replay.stream)
     places = [bar.left + bar.width // 2, bar.left - 50, bar.left + bar.width + 500]
-    inspector.point(Pointer(places[0], bar.top + 2, False, "press", 1))
+    inspector.point(Pointer(places[0], bar.top + 2, "press", 1))
     numbers = [at_rest(inspector).session.number]
     for place in places[1:]:
         # The pointer may leave the bar while its button is down.
-        inspector.point(Pointer(place, 30, False, "move"))
+        inspector.point(Pointer(place, 30, "move"))
         numbers.append(at_rest(inspector).session.number)
     assert numbers == [(last + 1) // 2, 0, last]
 
@@ -142,7 +142,7 @@ def test_the_wheel_steps() -> None:
     inspector = press(inspector_of(OUTLINE), "end")
     last = inspector.session.number
     for action, steps, number in (("wheel up", 5, last - 5), ("wheel down", 2, last - 3)):
-        inspector.point(Pointer(9, 9, False, action, steps=steps))
+        inspector.point(Pointer(9, 9, action, steps=steps))
         assert at_rest(inspector).session.number == number
 
 

@@ -330,13 +330,13 @@ def test_the_mouse_and_dropped_files_are_reported_in_elements_and_lines(monitor:
     pygame.key.set_mods(0)
     presses = [call for call in calls if not isinstance(call, Pointer) or "wheel" not in call.action]
     assert presses == [
-        Pointer(0, 0, True, "press", 1),
-        Pointer(1, 1, True, "move"),
-        Pointer(639, 479, False, "release", 1),
+        Pointer(0, 0, "press", 1),
+        Pointer(1, 1, "move"),
+        Pointer(639, 479, "release", 1),
         Path("/some/scene.toml"),
-        Pointer(0, 0, False, "press", 2, shift=True),
-        Pointer(0, 0, False, "press", 2, control=True),
-        Pointer(0, 0, False, "press", 2, shift=True, control=True),
+        Pointer(0, 0, "press", 2, shift=True),
+        Pointer(0, 0, "press", 2, control=True),
+        Pointer(0, 0, "press", 2, shift=True, control=True),
     ]
     wheels = [call for call in calls if call not in presses and isinstance(call, Pointer)]
     assert [(wheel.action, wheel.steps) for wheel in wheels] == [("wheel down", 3)] * 3
@@ -481,23 +481,19 @@ def test_a_screenshot_takes_the_next_free_number_or_is_a_message(
 def test_the_mouse_moves_the_joystick_and_its_buttons_are_the_switches(unopened: UnopenedMonitor) -> None:
     given: list[Pointer] = []
     unopened.on_pointer = given.append
-    unopened.handle_pointer(Pointer(30, 40, False, "move"))
-    unopened.handle_pointer(Pointer(31, 41, False, "press", 1))
-    unopened.handle_pointer(Pointer(32, 42, False, "press", 3))
+    unopened.handle_pointer(Pointer(30, 40, "move"))
+    unopened.handle_pointer(Pointer(31, 41, "press", 1))
+    unopened.handle_pointer(Pointer(32, 42, "press", 3))
     joystick = unopened.display.joystick
     assert joystick.position == (32, 42)
     assert joystick.track
     assert unopened.display.cursors.enter_is_pressed
-    unopened.handle_pointer(Pointer(32, 42, False, "release", 3))
-    unopened.handle_pointer(Pointer(33, 43, False, "release", 1))
+    unopened.handle_pointer(Pointer(32, 42, "release", 3))
+    unopened.handle_pointer(Pointer(33, 43, "release", 1))
     assert not joystick.track
-    assert [(pointer.enter, pointer.action, pointer.button) for pointer in given] == [
-        (False, "move", 0),
-        (True, "press", 1),
-        (True, "press", 3),
-        (True, "release", 3),
-        (False, "release", 1),
-    ]
+    assert [(pointer.action, pointer.button) for pointer in given] == [
+        ("move", 0), ("press", 1), ("press", 3), ("release", 3), ("release", 1),
+    ]  # fmt: skip
 
 
 def test_a_program_s_picture_is_shown_and_its_mouse_is_no_joystick(on_screen: str, tmp_path: Path) -> None:
@@ -514,7 +510,7 @@ def test_a_program_s_picture_is_shown_and_its_mouse_is_no_joystick(on_screen: st
     place = display.joystick.position
     post(pygame.MOUSEBUTTONDOWN, pos=(599, 399), button=1)
     monitor.step()
-    assert given == [Pointer(299, 199, True, "press", 1)]
+    assert given == [Pointer(299, 199, "press", 1)]
     assert display.joystick.position == place
     assert not display.cursors.enter_is_pressed
     monitor.steer(given[0])
@@ -536,7 +532,7 @@ def test_a_page_is_shown_over_the_field(unopened: UnopenedMonitor) -> None:
 
 def test_a_monitor_is_at_rest_when_nothing_is_down_and_nothing_waits(unopened: UnopenedMonitor) -> None:
     assert unopened.is_at_rest
-    for down in (Key("left"), Pointer(1, 2, False, "press", 1)):
+    for down in (Key("left"), Pointer(1, 2, "press", 1)):
         unopened.input.add(down)
         unopened.handle(unopened.input.take())
         assert not unopened.is_at_rest
