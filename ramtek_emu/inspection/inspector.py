@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from string import digits
 from typing import Final, NamedTuple
@@ -77,9 +78,6 @@ class Inspector:
         session = self.session
         if key.name == "f12":
             return False
-        if key.name in ("return", "enter"):
-            self._do(sessions.enter, key.shift)
-            return True
         if session.typed is not None and key.name == "backspace":
             self._do(sessions.ask, session.typed[:-1])
             return True
@@ -87,7 +85,8 @@ class Inspector:
         if types and (session.typed is not None or key.text in digits):
             self._do(sessions.ask, (session.typed or "") + key.text)
             return True
-        name = f"{'shift ' if key.shift else ''}{'ctrl ' if key.control else ''}{key.name}"
+        name = f"{'ctrl+' if key.control else ''}{'shift+' if key.shift else ''}{key.name}"
+        name = name.replace("return", "enter").replace("escape", "esc")
         for binding in self.bindings:
             if name in binding.keys and not (key.repeated and binding.is_once):
                 self._do(binding.action)
@@ -162,10 +161,9 @@ class Inspector:
 class KeyBinding(NamedTuple):
     """Keys and a button for an action."""
 
-    keys_text: str
+    text: str
+    """The keys, with commas between them."""
     help: str
-    keys: tuple[str, ...]
-    """The names of keys, with "shift " or "ctrl " before a name."""
     action: Callable[[Inspection], Inspection]
     button: str = ""
     """The text of the button; "" for no button."""
@@ -173,6 +171,11 @@ class KeyBinding(NamedTuple):
     """Whether the action is not repeated while its key stays down."""
     is_live: bool = False
     """Whether the action is for running displays only."""
+
+    @property
+    def keys(self) -> list[str]:
+        """The names of the keys, with "shift+" before a name."""
+        return self.text.lower().split(", ")
 
 
 def point_at(session: Inspection, place: Point | None = None, entry: int | None = None) -> Inspection:
@@ -198,46 +201,34 @@ def save_snapshot(session: Inspection) -> Inspection:
     return sessions.tell(session, f"saved {path}")
 
 
+def pause_or_go_on(session: Inspection) -> Inspection:
+    """Pause the host of a running display, or let it go on."""
+    return sessions.pause(session) if session.is_following else sessions.go_on(session)
+
+
 BINDINGS: Final = (
+    KeyBinding("Space", "pause the host, or let it go on", pause_or_go_on, "pause, go on", True, True),
+    KeyBinding("Home", "the start, before the first instruction", partial(sessions.go, number=0), "|<"),
+    KeyBinding("Page Up", "ten steps back", partial(sessions.step, count=-10), "-10"),
+    KeyBinding("Left, Up", "a step back", partial(sessions.step, count=-1), "<"),
+    KeyBinding("Right, Down", "a step on", partial(sessions.step, count=1), ">"),
+    KeyBinding("Page Down", "ten steps on", partial(sessions.step, count=10), "+10"),
+    KeyBinding("End", "the end of the stream", lambda session: sessions.go(session, session.length), ">|"),
     KeyBinding(
-        "Space", "pause the host, or let it go on", ("space",),
-        lambda session: (sessions.pause if session.is_following else sessions.go_on)(session),
-        "pause, go on", True, True,
+        "0 to 9, F", "type an instruction's number, or a text such as FORE=7", sessions.ask, "go to, find"
     ),
+    KeyBinding("Enter", "go to the number, or to the next instruction with the text", sessions.enter),
+    KeyBinding("Shift+Enter", "the previous instruction with the text", partial(sessions.enter, back=True)),
+    KeyBinding("C", "the next change of the selection", sessions.next_change, "change"),
+    KeyBinding("Shift+C", "the previous change of the selection", partial(sessions.next_change, back=True)),
     KeyBinding(
-        "Home", "the start, before the first instruction", ("home",),
-        lambda session: sessions.go(session, 0), "|<",
+        "F4", "the entries of the lookup table, and back", partial(sessions.turn_to, page="entries"),
+        "entries", True,
     ),
-    KeyBinding("Page Up", "ten back", ("page up",), lambda session: sessions.step(session, -10), "-10"),
-    KeyBinding("Left, Up", "a step back", ("left", "up"), lambda session: sessions.step(session, -1), "<"),
-    KeyBinding(
-        "Right, Down", "a step on", ("right", "down"), lambda session: sessions.step(session, 1), ">"
-    ),
-    KeyBinding("Page Down", "ten on", ("page down",), lambda session: sessions.step(session, 10), "+10"),
-    KeyBinding(
-        "End", "the end of the stream", ("end",), lambda session: sessions.go(session, session.length), ">|"
-    ),
-    KeyBinding(
-        "0 to 9, F", "type an instruction's number, or a text such as FORE=7", ("f",), sessions.ask,
-        "go to, find",
-    ),
-    KeyBinding("Enter", "go to the number, or to the next instruction with the text", (), sessions.enter),
-    KeyBinding("Shift+Enter", "the previous instruction with the text", (), sessions.enter),
-    KeyBinding("C", "the next change of the selection", ("c",), sessions.next_change, "change"),
-    KeyBinding(
-        "Shift+C", "the previous change of the selection", ("shift c",),
-        lambda session: sessions.next_change(session, back=True),
-    ),
-    KeyBinding(
-        "F4", "the entries of the lookup table, and back", ("f4",),
-        lambda session: sessions.turn_to(session, "entries"), "entries", True,
-    ),
-    KeyBinding("F2", KEYS[1][1], ("f2",), turn_table, "table", True),
-    KeyBinding("S", "save a numbered snapshot of the display", ("s",), save_snapshot, "snapshot", True),
-    KeyBinding("Esc", "stop a search, close the page, or clear the selection", ("escape",), sessions.escape),
-    KeyBinding(
-        "F1", "this help, and back", ("f1",), lambda session: sessions.turn_to(session, "help"), "help", True
-    ),
+    KeyBinding("F2", KEYS[1][1], turn_table, "table", True),
+    KeyBinding("S", "save a numbered snapshot of the display", save_snapshot, "snapshot", True),
+    KeyBinding("Esc", "stop a search, close the page, or clear the selection", sessions.escape),
+    KeyBinding("F1", "this help, and back", partial(sessions.turn_to, page="help"), "help", True),
 )  # fmt: skip
 MOUSE_LIVE: Final = (("mouse, running", "over the field: the joystick, whose ENTER is the left button"),)
 MOUSE: Final = (
@@ -254,5 +245,5 @@ WINDOW_KEYS: Final = tuple(row for row in KEYS if row[0] in ("F3", "F10", "F11, 
 
 def help_rows(is_live: bool) -> list[tuple[str, str]]:
     """The keys and the mouse of an inspector, of a running display if `is_live`, with their actions."""
-    bindings = [(binding.keys_text, binding.help) for binding in BINDINGS if is_live or not binding.is_live]
+    bindings = [(binding.text, binding.help) for binding in BINDINGS if is_live or not binding.is_live]
     return [*bindings, *(MOUSE_LIVE if is_live else ()), *MOUSE, *WINDOW_KEYS]
