@@ -30,6 +30,15 @@ class EntryRange(NamedTuple):
 
 Selection: TypeAlias = Window | EntryRange
 """Pixels of the memory, or entries of the lookup table."""
+
+
+def is_single(selection: Selection) -> bool:
+    """Whether a selection is one pixel or one entry."""
+    if isinstance(selection, EntryRange):
+        return selection.end - selection.first == 1
+    return selection.width == selection.height == 1
+
+
 Result = TypeVar("Result")
 Search: TypeAlias = Generator[None, None, Result]
 """A search that pauses after each instruction, and returns its result at the end."""

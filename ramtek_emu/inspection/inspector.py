@@ -138,7 +138,7 @@ class Inspector:
         if part != "stage" or self.session.page == "help":
             self._do(point_at)
         elif self.session.page == "entries":
-            self._do(point_at, None, page.entry_at(place))
+            self._do(point_at, page.entry_at(place))
         else:
             self._do(point_at, page.field_place(place))
         if self._anchor == "stage" and place != self._anchor_place:
@@ -150,7 +150,7 @@ class Inspector:
         if self.session.page == "entries":
             first, last = page.entry_at(begin), page.entry_at(end)
             if first is not None and last is not None:
-                entries = EntryRange(min(first, last), max(first, last) + 1)
+                entries = EntryRange(min(first, last).first, max(first, last).end)
                 self._do(sessions.select, entries, is_final)
         else:
             places = page.field_place(begin), page.field_place(end)
@@ -178,9 +178,9 @@ class KeyBinding(NamedTuple):
         return self.text.lower().split(", ")
 
 
-def point_at(session: Inspection, place: Point | None = None, entry: int | None = None) -> Inspection:
+def point_at(session: Inspection, pointed: Point | EntryRange | None = None) -> Inspection:
     """Note the place of the screen, or the entry, under the pointer."""
-    return replace(session, pointer=place, pointed_entry=entry)
+    return replace(session, pointed=pointed)
 
 
 def turn_table(session: Inspection) -> Inspection:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ramtek_emu.arrays import Colors, Dots, PackedColors
 from ramtek_emu.inspection import panels
-from ramtek_emu.inspection.histories import EntryRange
+from ramtek_emu.inspection.histories import EntryRange, is_single
 from ramtek_emu.inspection.session import Inspection, display_of, is_preparing, shown_pixels
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import (
@@ -267,7 +267,7 @@ class InspectorPage:
                 inside = (places >= selection.left) & (places <= selection.right)
                 within = (rows >= selection.top) & (rows <= selection.bottom)
                 shown[...] = self._enlarged(within[:, np.newaxis] & inside)
-                if selection.width == selection.height == 1:
+                if is_single(selection):
                     for _ in range(DISTANCE):
                         dots = grown(dots)
                 mark(stage, dots, BLACK, ORANGE)
@@ -328,7 +328,7 @@ class InspectorPage:
         element = min(max(place.element - field.left, 0), field.width - 1)
         return Point(element // zoom, min(max(place.line - field.top, 0), field.height - 1) // zoom)
 
-    def entry_at(self, place: Point) -> int | None:
+    def entry_at(self, place: Point) -> EntryRange | None:
         """The entry at a place of the page of entries; None if there is none."""
         words = self._cells()
         line, element = (
@@ -336,4 +336,5 @@ class InspectorPage:
             for at, size in zip((place.line, place.element), words.shape, strict=True)
         )
         word = int(words[line, element])
-        return display_of(self.session).scan_out.first_entry + word if word < len(self.table()) else None
+        entry = display_of(self.session).scan_out.first_entry + word
+        return EntryRange(entry, entry + 1) if word < len(self.table()) else None

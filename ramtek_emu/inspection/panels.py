@@ -12,7 +12,7 @@ from typing import Final
 
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection.histories import EntryRange, Write
+from ramtek_emu.inspection.histories import EntryRange, Selection, Write, is_single
 from ramtek_emu.inspection.listing import meaning_of
 from ramtek_emu.inspection.session import (
     Inspection,
@@ -135,44 +135,37 @@ def cursors(session: Inspection) -> list[Line]:
 
 def pixels(session: Inspection) -> list[Line]:
     """The pixel or entry under the pointer, the selection, and, in another view, the place on the screen."""
-    lines: list[Line] = []
+    pointed: Selection | None = None
     view: list[Line] = []
-    if session.pointed_entry is not None:
-        lines.append((Span("pointer   ", YELLOW), *entry_spans(session, session.pointed_entry)))
-    elif session.pointer is not None:
+    if isinstance(session.pointed, EntryRange):
+        pointed = session.pointed
+    elif session.pointed is not None:
         display = display_of(session)
         parameters = display.processor.parameters
-        element, line = pixel_at(parameters, display.configuration, *session.pointer)
-        lines.append((Span("pointer   ", YELLOW), *pixel_spans(session, element, line)))
         if view_of(parameters) != PLAIN_VIEW:
-            view = [(Span(f"screen    {session.pointer.element},{session.pointer.line}", GRAY),)]
-    else:
-        lines.append((Span("pointer", YELLOW),))
-    selection = session.selection
-    if isinstance(selection, EntryRange) and selection.end - selection.first == 1:
-        lines.append((Span("selected  ", YELLOW), *entry_spans(session, selection.first)))
-    elif isinstance(selection, Window) and selection.width == selection.height == 1:
-        lines.append((Span("selected  ", YELLOW), *pixel_spans(session, selection.left, selection.top)))
-    elif selection is not None:
-        lines.append((Span("selected  ", YELLOW), Span(selection_text(selection))))
-    else:
-        lines.append(())
-    return lines + view
+            view = [(Span(f"screen    {session.pointed.element},{session.pointed.line}", GRAY),)]
+        element, line = (
+            int(place) for place in pixel_at(parameters, display.configuration, *session.pointed)
+        )
+        pointed = Window(element, line, element, line)
+    parts = {"pointer   ": pointed, "selected  ": session.selection}
+    return [(Span(name, YELLOW), *selection_spans(session, part)) for name, part in parts.items()] + view
 
 
-def pixel_spans(session: Inspection, element: int, line: int) -> Line:
-    """A pixel of the memory: place, word, entry and color."""
-    word = int(display_of(session).words[line, element])
-    first = display_of(session).scan_out.first_entry
-    return (
-        Span(f"{element},{line}  word {word:04X} = {word}  entry {first + word} "),
-        *word_spans(session, word),
-    )
-
-
-def entry_spans(session: Inspection, entry: int) -> Line:
-    """An entry of the lookup table: number and color."""
-    return Span(f"entry {entry} "), *color_spans(int(display_of(session).lookup_table.packed[entry]))
+def selection_spans(session: Inspection, selection: Selection | None) -> Line:
+    """A pixel of the memory with its word, entry and color; an entry with its color; or a range."""
+    if selection is None:
+        return ()
+    display = display_of(session)
+    if not is_single(selection):
+        return (Span(selection_text(selection)),)
+    if isinstance(selection, EntryRange):
+        entry = selection.first
+        return Span(f"entry {entry} "), *color_spans(int(display.lookup_table.packed[entry]))
+    element, line = selection.left, selection.top
+    word = int(display.words[line, element])
+    text = f"{element},{line}  word {word:04X} = {word}  entry {display.scan_out.first_entry + word} "
+    return Span(text), *word_spans(session, word)
 
 
 def word_spans(session: Inspection, word: int) -> Line:

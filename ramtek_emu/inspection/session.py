@@ -20,7 +20,7 @@ import numpy as np
 
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection import histories
-from ramtek_emu.inspection.histories import EntryRange, Search, Selection, Write
+from ramtek_emu.inspection.histories import EntryRange, Search, Selection, Write, is_single
 from ramtek_emu.inspection.listing import moved, next_with, rows_from
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
@@ -61,9 +61,8 @@ class Inspection:
     is_following: bool = False
     """Whether the session shows a running display as it runs."""
     work: PendingSearch | None = None
-    pointer: Point | None = None
-    pointed_entry: int | None = None
-    """The entry under the pointer, on the page of entries."""
+    pointed: Point | EntryRange | None = None
+    """The place of the screen under the pointer; on the page of entries, the entry."""
     selection: Selection | None = None
     writes: tuple[Write, ...] | None = None
     """The instructions that wrote the selected pixel or entry, oldest first; None if nothing was asked."""
@@ -252,11 +251,7 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
         return session
     session = pause(session)
     session = replace(session, writes_until=session.target)
-    if isinstance(selection, EntryRange):
-        size = selection.end - selection.first
-    else:
-        size = selection.width * selection.height
-    if size != 1:
+    if not is_single(selection):
         return session
 
     def found(session: Inspection, writes: Sequence[Write]) -> Inspection:
@@ -300,7 +295,7 @@ def tell(session: Inspection, message: str) -> Inspection:
 
 def turn_to(session: Inspection, page: str) -> Inspection:
     """Show a page, or the field if the page is shown already."""
-    return replace(session, page="" if session.page == page else page, pointed_entry=None, pointer=None)
+    return replace(session, page="" if session.page == page else page, pointed=None)
 
 
 def click_listing(session: Inspection, row: int) -> Inspection:
@@ -376,9 +371,7 @@ def value_text(name: str, value: Any) -> str:
 def selection_text(selection: Selection) -> str:
     """A selection in words."""
     if isinstance(selection, EntryRange):
-        if selection.end - selection.first == 1:
-            return f"entry {selection.first}"
-        return f"entries {selection.first} to {selection.end - 1}"
-    if selection.width == selection.height == 1:
-        return f"pixel {selection.left},{selection.top}"
-    return f"rectangle {selection.left},{selection.top}..{selection.right},{selection.bottom}"
+        first, last = selection.first, selection.end - 1
+        return f"entry {first}" if is_single(selection) else f"entries {first} to {last}"
+    left, top, right, bottom = selection
+    return f"pixel {left},{top}" if is_single(selection) else f"rectangle {left},{top}..{right},{bottom}"

@@ -150,12 +150,12 @@ def test_the_pointer_is_noted_on_the_field_and_on_the_page_of_entries() -> None:
     inspector = inspector_of(BOXES)
     noted = []
     for place in ((639, 479), (0, 0), (642, 479)):
-        noted.append(point(inspector, ("move", *place)).session.pointer)
+        noted.append(point(inspector, ("move", *place)).session.pointed)
     assert noted == [(639, 479), (0, 0), None]
     press(inspector, "f4")
-    entries = [point(inspector, ("move", *place)).session.pointed_entry for place in ((639, 479), (0, 0))]
-    assert entries == [1023, 0]
-    assert point(inspector, ("move", 642, 479)).session.pointed_entry is None
+    entries = [point(inspector, ("move", *place)).session.pointed for place in ((639, 479), (0, 0))]
+    assert entries == [EntryRange(1023, 1024), EntryRange(0, 1)]
+    assert point(inspector, ("move", 642, 479)).session.pointed is None
 
 
 def test_the_help_page_has_every_key_and_fits() -> None:

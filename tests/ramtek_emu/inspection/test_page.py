@@ -131,7 +131,7 @@ def test_a_message_and_the_pointer_change_only_their_lines() -> None:
     stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
     for state, name in (
         (tell(session.state, "a message"), "status"),
-        (replace(tell(session.state, "a message"), pointer=Point(5, 5)), "pixels"),
+        (replace(tell(session.state, "a message"), pointed=Point(5, 5)), "pixels"),
     ):
         page.session = state
         box = page.layout.boxes[name]
@@ -155,7 +155,7 @@ def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str)
     parameters = session.display.processor.parameters
     parameters.origin = Point(sizes.elements - 1, sizes.lines - 1)
     session.display.send(instructions.erase(word=sizes.largest_word))
-    session.state = replace(session.state, pointer=Point(0, 0))
+    session.state = replace(session.state, pointed=Point(0, 0))
     last = Window(sizes.elements - 1, sizes.lines - 1, sizes.elements - 1, sizes.lines - 1)
     session.select(last)
     pixels = [text_of(line) for line in panels.pixels(session.state)]
@@ -233,7 +233,7 @@ def test_every_entry_has_its_cell(name: str) -> None:
         for element in range(EDGE, page.layout.stage.width - EDGE, 5):
             entry = page.entry_at(Point(element, line))
             if entry is not None:
-                words.add(word := entry - scan_out.first_entry)
+                words.add(word := entry.first - scan_out.first_entry)
                 assert shown[line, element] == scan_out.table()[word]
     assert len(words) == len(scan_out.table())
 

@@ -77,13 +77,13 @@ def test_a_history_says_up_to_which_instruction_it_is() -> None:
 def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
     session = session_of(*BOXES_STREAM)
     session.go(2)
-    session.state = replace(session.state, pointer=Point(3, 4))
+    session.state = replace(session.state, pointed=Point(3, 4))
     session.select(Window(5, 6, 5, 6))
     pointer, selected = panels.pixels(at_rest(session).state)
     assert text_of(pointer).split() == ["pointer", "3,4", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
     assert text_of(selected).split() == ["selected", "5,6", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
     assert pointer[2].background == 0x0A141E
-    session.state = replace(session.state, pointed_entry=5)
+    session.state = replace(session.state, pointed=EntryRange(5, 6))
     session.select(EntryRange(5, 8))
     assert [text_of(line).split() for line in panels.pixels(session.state)] == [
         ["pointer", "entry", "5", "#0A141E"],
