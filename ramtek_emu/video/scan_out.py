@@ -69,7 +69,7 @@ DARKEST: Final = 64
 
 
 def gray_table(name: str, words: int) -> PackedColors:
-    """The colors of so many words, 0x00RRGGBB, in one of `TABLES`.
+    """The colors 0x00RRGGBB of the first `words` words, (words,) uint32, in a table of `TABLES`.
 
     >>> [f"{color:06x}" for color in gray_table("gray", 4)]
     ['000000', '404040', 'a0a0a0', 'ffffff']
