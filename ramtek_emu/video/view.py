@@ -14,8 +14,6 @@ from __future__ import annotations
 
 from typing import Final, TypeVar
 
-import numpy as np
-
 from ramtek_emu.arrays import Indices
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.memory.parameters import Parameters
