@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -78,8 +77,7 @@ def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
 ) -> None:
     played = play(frames, "--film", name, *options, "-o", "a.png")
     assert played.exit_code == 0
-    count = f"{len(expected)} frame{'s' * (len(expected) > 1)}"
-    assert played.stderr.splitlines() == [f"wrote {name}, {count}", "wrote a.png"]
+    assert played.stderr.splitlines() == [f"wrote {name}", "wrote a.png"]
     assert reds(name) == expected
     assert np.array_equal(decoded(name)[-1], field_of(Path("a.png")))
 
@@ -96,22 +94,8 @@ def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(fr
         assert film.info["loop"] == 1
 
 
-def test_a_film_that_is_too_long_has_the_last_frame_and_says_so(
-    frames: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("ramtek_emu.films.MOST_FIELDS", 3)
-    played = play(frames, "--film", "a.webp")
-    assert played.stderr.splitlines() == [
-        "a film such as a.webp must have at most 3 frames, not more: it has the first 2 and the last; make"
-        " fewer with --every",
-        "wrote a.webp, 3 frames",
-    ]
-    assert reds("a.webp") == [20, 40, 100]
-
-
 REFUSED: list[tuple[list[object], int, str]] = [
     (["--film", "a.gif"], 73, "a film must end in"),
-    (["--film", "{number:02}.png", "--force", "--record", "./001.png"], 2, "a picture of {number:02}.png"),
     (["--film", "frames.apng"], 73, "which exists"),
     (["--film", "a.webp", "--fps", 101], 2, "fields per second"),
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
@@ -195,7 +179,7 @@ def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
         assert process.wait(60) in (-signal.SIGINT, 128 + signal.SIGINT)
         assert process.stderr is not None
         messages = process.stderr.read()
-    assert re.search(rb"wrote .*\{number\}\.png, [23] frames", messages)
+    assert b"{number}.png\n" in messages
     assert b"a signal ended the stream within an instruction: its 2 words were dropped" in messages
     numbers = sorted(int(path.stem) for path in tmp_path.glob("[0-9]*.png"))
     assert numbers in ([1, 2], [1, 2, 3])
