@@ -44,7 +44,6 @@ FRAMES_PER_SECOND: Final = 24.0
 @click.command(epilog=EXAMPLES)
 @click.argument("stream", type=click.Path())
 @display_options
-@click.option("--window", is_flag=True, help="Open the window even if a picture is written.")
 @click.option(
     "--loads-per-second",
     type=click.IntRange(1, 1000),
@@ -79,7 +78,6 @@ def play(
     start: str | None,
     force: bool,
     record: str | None,
-    window: bool,
     loads_per_second: int | None,
     film: str | None,
     every: int | None,
@@ -91,10 +89,10 @@ def play(
     Without -o, --snapshot or --film it is shown in a window. The replies to instructions that read are
     dropped.
     """
-    in_window = window or (output is None and snapshot is None and film is None)
+    in_window = output is None and snapshot is None and film is None
     if loads_per_second is not None and not in_window:
-        raise click.UsageError("--loads-per-second is for the window; add --window, or leave it out")
-    refuse_film(film, every, fps, once, window, force)
+        raise click.UsageError("--loads-per-second is for the window; leave it out, or the outputs")
+    refuse_film(film, every, fps, once, force)
     refuse_outputs(force, record, film, pictures=[output, snapshot])
     file = open_stream(stream)
     display = display_asked_for(configuration, start, table)
@@ -142,20 +140,13 @@ def play(
         raise Ended(run.signal)
 
 
-def refuse_film(
-    film: str | None, every: int | None, fps: float | None, once: bool, window: bool, force: bool
-) -> None:
+def refuse_film(film: str | None, every: int | None, fps: float | None, once: bool, force: bool) -> None:
     """Refuse a film that cannot be written, and options of a film without a film, before the work."""
     if film is None:
         for option, value in (("--every", every), ("--fps", fps), ("--once", once or None)):
             if value is not None:
                 raise click.UsageError(f"{option} is for a film; add --film FILE, or leave it out")
         return
-    if window:
-        raise click.UsageError(
-            "a film must be written without a window, not with --window; leave it out, or press F3"
-            " in the window to record what it shows"
-        )
     from ramtek_emu.films import check_film
 
     try:
