@@ -36,7 +36,7 @@ from ramtek_emu.configuration import Configuration, EntryFormat
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError, reason_of
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.png import chunks, gray_png_bytes
+from ramtek_emu.png import chunks
 from ramtek_emu.processor.environment_executors import MOST_SAVED
 from ramtek_emu.timing import Timing
 from ramtek_emu.writing import PNG, check_suffix, write_atomically
@@ -290,12 +290,14 @@ MOST_CHUNKS: Final = 1 << 13
 
 def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
     """A PNG file of (lines, elements) words, 16 bits gray, and of ASCII texts by keyword."""
+    from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 
-    chunks = PngInfo()
+    buffer, info = BytesIO(), PngInfo()
     for keyword, text in texts.items():
-        chunks.add_text(keyword, text)
-    return gray_png_bytes(words, chunks)
+        info.add_text(keyword, text)
+    Image.fromarray(np.ascontiguousarray(words)).save(buffer, "PNG", pnginfo=info)
+    return buffer.getvalue()
 
 
 def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:

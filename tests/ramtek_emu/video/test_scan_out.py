@@ -149,10 +149,9 @@ LOAD = "load", (3, 0, 2), True
 
 
 # Words written between two loads show the second load, and a view that came back shows the next load.
-@example({}, 1, steps(("write words", ((2, 3), 300), True), LOAD, ("write words", ((7, 3), 300), True), LOAD))
+@example({}, steps(("write words", ((2, 3), 300), True), LOAD, ("write words", ((7, 3), 300), True), LOAD))
 @example(
     {},
-    1,
     steps(
         ("blink", True, True), ("origin", (0, 4), False), ("scan out another", None, False),
         ("origin", (0, 0), False), LOAD,
