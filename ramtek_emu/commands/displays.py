@@ -10,7 +10,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
@@ -257,11 +256,7 @@ def open_stream(path: str) -> BinaryIO:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
         return sys.stdin.buffer
     try:
-        if Path(path).is_dir():
-            raise MissingInputError(f"a stream must be a file, not the folder {path}; name a file in it")
         return open(path, "rb")
-    except MissingInputError:
-        raise
     except (OSError, ValueError) as cause:
         raise MissingInputError(
             f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"

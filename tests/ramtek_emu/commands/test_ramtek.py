@@ -38,7 +38,7 @@ REFUSED = (
     ("--configuration gmr_9301 -o x.png", 2, "ramtek: a configuration must be"),
     ("play", 2, "Error: Missing argument 'STREAM'."),
     ("play none", 66, "ramtek: a stream must be a file that can be read, not 'none' (no such file"),
-    ("play .", 66, "ramtek: a stream must be a file, not the folder .; name a file in it"),
+    ("play .", 66, "ramtek: a stream must be a file that can be read, not '.' (is a directory); check"),
     ("play ''", 2, "Error: an input must be the name of a file, not ''; give it one"),
     (
         "play - --configuration gmr_9300 --start s.png",
