@@ -74,13 +74,15 @@ class Ramtek9300:
             part.restore(state[name])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        beside = self.resets, self.words_received, self.decoder, self.processor.replies
+        processor = self.processor
+        beside = self.resets, self.words_received, self.decoder, processor.replies, processor.foreign
         return type(self), (self.configuration,), (self.state(), beside)
 
     def __setstate__(self, saved: tuple[Any, ...]) -> None:
         state, beside = saved
         self.restore(state)
-        self.resets, self.words_received, self.decoder, self.processor.replies = beside
+        self.resets, self.words_received, self.decoder, replies, foreign = beside
+        self.processor.replies, self.processor.foreign = replies, foreign
 
     def _parts(self) -> dict[str, Any]:
         """The parts that have a state; the beam paints the monitor image, so it comes first."""

@@ -12,12 +12,12 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Numbers
-from ramtek_emu.drawing import curves, text, vectors
+from ramtek_emu.drawing import curves, plots, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register, signed
-from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
@@ -107,12 +107,7 @@ def write_conic(processor: Processor, instruction: Instruction) -> Pauses:
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
-MARKS_AT_ONCE: Final = 256
-PIXELS_AT_ONCE: Final = 1 << 20
-"""Limits: the marks, and the pixels of marks, between two pauses; some 2 ms each."""
-
-
-def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
+def write_plot(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Draw a bar for each number of the data, from the base line to the number.
 
     Hardware: LIN libdoc (a starting point, a scanning mode, the dimension and the spacing in the direction of
@@ -125,25 +120,28 @@ def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
     mode, with a sign. Only the memory and the write window clip. The operating point is then where the next
     bar begins, at the last number, as fplot.c starts at the first number.
     """
-    parameters = processor.parameters
-    order, width, step = parameters.order, max(1, parameters.dimensions[0]), parameters.spacing[0]
-    base = signed(parameters.base_line)
+    parameters, order = processor.parameters, processor.parameters.order
+    values = processor.points(instruction, 1)[:, 0]
+    if not len(values):
+        return None
+    width = max(1, parameters.dimensions[0])
+    backward = order.upward if order.vertical else order.leftward
+    step = -parameters.spacing[0] if backward else parameters.spacing[0]
+    first = parameters.start.line if order.vertical else parameters.start.element
+    places = (first + step * np.arange(len(values) + 1)).astype(np.int16).astype(np.int64)
+    place, value = int(places[-1]), int(values[-1])
+    parameters.start = Point(value, place) if order.vertical else Point(place, value)
     word, _ = processor.colors(instruction)
-    pixels = 0
-    for number, value in enumerate(processor.points(instruction, 1)[:, 0].tolist(), 1):
-        first = parameters.start
-        last = order.stepped(first, width - 1, 0)
-        (left, right), (top, bottom) = map(sorted, zip(first, last, strict=True))
-        low, high = sorted((base, value))
-        box = Window(low, top, high, bottom) if order.vertical else Window(left, low, right, high)
-        before = processor.frame_buffer.written
-        processor.frame_buffer.fill(box, word, parameters.enable)
-        pixels += processor.frame_buffer.written - before
-        element, line = order.stepped(first, step, 0)
-        parameters.start = register(Point(value, line) if order.vertical else Point(element, value))
-        if number % MARKS_AT_ONCE == 0 or pixels >= PIXELS_AT_ONCE:
-            pixels = 0
-            yield
+    return plots.write_bars(
+        processor.frame_buffer,
+        places[:-1] - (width - 1 if backward else 0),
+        values,
+        width=width,
+        base=signed(parameters.base_line),
+        vertical=order.vertical,
+        word=word,
+        enable=parameters.enable,
+    )
 
 
 def write_text(processor: Processor, instruction: Instruction) -> Pauses:

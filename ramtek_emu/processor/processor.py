@@ -71,10 +71,7 @@ class Processor:
         self.illegal_words = 0
         """The number of illegal words that were skipped; it never decreases."""
         self.foreign: str | None = None
-        """The first instruction of the host that this display lacks and the 9460 has, such as "FILL".
-
-        "operand flags 2" stands for the second operand flag word in another instruction.
-        """
+        """What the host sent first that this 9300 lacks and the 9460 has, such as "FILL"; None if nothing."""
         self.unimplemented = 0
         """The number of instructions without effect, known by name only; it never decreases."""
         self._illegal = False
