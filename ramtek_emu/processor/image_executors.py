@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.drawing import areas, vectors
+from ramtek_emu.drawing import areas
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import register
@@ -96,7 +96,9 @@ def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     data = np.frombuffer(instruction.data_bytes(), np.uint8)
     foreground, background = processor.colors(instruction)
     words = np.array((background, foreground), np.uint16)
-    at_once = max(1, vectors.MOST_POINTS // 8)
+    # Bits that go around the window take many times as long.
+    goes_around = 8 * len(data) > parameters.window.width * parameters.window.height
+    at_once = max(1, areas.MOST_AT_ONCE // (128 if goes_around else 8))
     for first in range(0, len(data), at_once):
         if first:
             yield
@@ -138,10 +140,11 @@ def fill(processor: Processor, instruction: Instruction) -> Pauses:
     by_seed = (instruction.length or 0) >= 2 and bool(instruction.data[0])
     seed = words[parameters.start.line, parameters.start.element]
     word = (seed if by_seed else np.uint16(foreground & parameters.whole_word)) & mask
+    compare = np.equal if by_seed else np.not_equal
     open_pixels = np.empty((inside.height, inside.width), np.bool_)
     for band in areas.bands(inside):
         part = words[band.top : band.bottom + 1, inside.left : inside.right + 1] & mask
-        open_pixels[band.top - inside.top : band.bottom + 1 - inside.top] = (part == word) == by_seed
+        compare(part, word, out=open_pixels[band.top - inside.top : band.bottom + 1 - inside.top])
         yield
     line, element = parameters.start.line - inside.top, parameters.start.element - inside.left
     filled = yield from areas.area(open_pixels, line, element)
