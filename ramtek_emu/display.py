@@ -55,7 +55,7 @@ class Ramtek9300:
             self.frame_buffer,
             self.lookup_table,
             self.cursors,
-            self.processor.current_parameters,
+            self.processor.parameters,
             self.beam,
         )
 
@@ -151,8 +151,9 @@ class Ramtek9300:
         """
         self.resets += 1
         self.decoder.clear()
-        self.processor.clear_replies()
-        self.cursors.hide()
+        self.processor.replies.clear()
+        for cursor in self.cursors.all:
+            cursor.state = 0
         for _ in self._take(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16)):
             pass
 

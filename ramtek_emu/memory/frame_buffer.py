@@ -34,7 +34,6 @@ class FrameBuffer:
     """The picture memory: (lines, elements) words."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
-        self.planes = configuration.planes
         self.window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
         self.written = 0
         """The number of words written since power-on; it never decreases."""
@@ -43,10 +42,6 @@ class FrameBuffer:
         self.words: Words = self._words.view()
         """The words, (lines, elements) uint16; a read-only view that stays current."""
         self.words.flags.writeable = False
-
-    def __repr__(self) -> str:
-        lines, elements = self._words.shape
-        return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
 
     def state(self) -> dict[str, Any]:
         """The words, (lines, elements) uint16."""

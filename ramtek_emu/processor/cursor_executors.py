@@ -26,7 +26,7 @@ def has_cursor(processor: Processor, instruction: Instruction) -> bool:
     """Whether the cursor of the instruction exists; if not, the illegal-instruction bit is set."""
     if instruction.low_byte in processor.cursors:
         return True
-    processor.flag_illegal()
+    processor.is_illegal = True
     return False
 
 

@@ -28,7 +28,7 @@ NOT_FOREIGN: Final = bytes(set(range(256)) - FOREIGN.keys())
 
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
     """Hardware: PRG (the status bit). Assumed: only the illegal words are skipped."""
-    processor.flag_illegal()
+    processor.is_illegal = True
     processor.illegal_words += len(instruction.data)
     if processor.foreign is None and not processor.configuration.extended:
         opcodes = instruction.data.astype(">u2").tobytes()[::2].translate(None, NOT_FOREIGN)
@@ -38,7 +38,7 @@ def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
 
 def consume(processor: Processor, instruction: Instruction) -> None:
     """Assumed: an instruction of which only the name is known sets the illegal-instruction status."""
-    processor.flag_illegal()
+    processor.is_illegal = True
     processor.unimplemented += 1
 
 
@@ -49,7 +49,8 @@ def reset(processor: Processor, instruction: Instruction) -> Pauses | None:
     """
     initialize(processor, instruction)
     processor.clear_status()
-    processor.cursors.forget_enter()
+    for cursor in processor.cursors.all:
+        cursor.enter = False
     parameters = processor.parameters
     return fill_window(
         processor.frame_buffer, parameters.whole_window, parameters.background, parameters.enable
@@ -58,7 +59,7 @@ def reset(processor: Processor, instruction: Instruction) -> Pauses | None:
 
 def initialize(processor: Processor, instruction: Instruction) -> None:
     """Assumed: only the parameters are reset, since libdoc mentions erasing for RSET only."""
-    processor.parameters = Parameters.at_reset(processor.configuration)
+    processor.parameters.restore(vars(Parameters.at_reset(processor.configuration)))
     processor.saved.clear()
 
 
@@ -71,15 +72,15 @@ def save_environment(processor: Processor, instruction: Instruction) -> None:
     if len(processor.saved) < MOST_SAVED:
         processor.saved.append(replace(processor.parameters))
     else:
-        processor.flag_illegal()
+        processor.is_illegal = True
 
 
 def restore_environment(processor: Processor, instruction: Instruction) -> None:
     """Assumed: restores the parameters saved last; without any, sets the illegal-instruction status."""
     if processor.saved:
-        processor.parameters = processor.saved.pop()
+        processor.parameters.restore(vars(processor.saved.pop()))
     else:
-        processor.flag_illegal()
+        processor.is_illegal = True
 
 
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
