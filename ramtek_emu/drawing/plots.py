@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from ramtek_emu.arrays import Numbers
-from ramtek_emu.drawing.areas import bands
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Window
 
@@ -27,7 +26,7 @@ def write_bars(
     word: int,
     enable: WriteEnable,
 ) -> Iterator[None]:
-    """Draw bars, and pause after each slice.
+    """Draw bars, and pause after 64 places.
 
     A bar covers `width` places from its least place on: elements, or lines if the scan is `vertical`. Across
     the scan it goes from the base line to its value, both included.
@@ -50,17 +49,9 @@ def write_bars(
         least[more:] = np.minimum(least[more:], least[:-more])
         most[more:] = np.maximum(most[more:], most[:-more])
         wide += more
-    first, last, begin, end = (
-        int(places.min()) + low,
-        int(places.max()) + low,
-        int(least.min()),
-        int(most.max()),
-    )
-    last += width - 1
-    box = Window(begin, first, end, last) if vertical else Window(first, begin, last, end)
-    for band in bands(box.intersection(inside)):
-        lines, elements = np.ogrid[band.top : band.bottom + 1, band.left : band.right + 1]
-        along, across = (lines, elements) if vertical else (elements, lines)
-        dots = (least[along - low] <= across) & (across <= most[along - low])
-        frame_buffer.fill(band, word, enable, dots)
-        yield
+    for row in np.flatnonzero(least <= most).tolist():
+        place, begin, end = low + row, int(least[row]), int(most[row])
+        run = Window(begin, place, end, place) if vertical else Window(place, begin, place, end)
+        frame_buffer.fill(run, word, enable)
+        if row % 64 == 0:
+            yield

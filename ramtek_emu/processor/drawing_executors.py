@@ -114,11 +114,11 @@ def write_plot(processor: Processor, instruction: Instruction) -> Pauses | None:
     scanning, a base line); LIN fplot.c (data are lines of the screen; DIM 1 and SPACE 1 put n numbers on n
     elements, so that spacing is the distance of two bars and dimension the width of a bar).
     Assumed: the opcode, by NCAR's name and by its place among the opcodes of the 9300; that all operands come
-    by flag words as in other instructions; that a mark is a bar in the foreground and includes both ends. The
-    second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters. The scan order gives the
-    direction of the steps; data and base line are the coordinates across it, absolute in each addressing
-    mode, with a sign. Only the memory and the write window clip. The operating point is then where the next
-    bar begins, at the last number, as fplot.c starts at the first number.
+    by flag words as in other instructions; that a plot has bars in the foreground, which include the base
+    line and the number. The second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters.
+    The scan order gives the direction of the steps; data and base line are the coordinates across it,
+    absolute in each addressing mode, with a sign. Only the memory and the write window clip. The operating
+    point is then where the next bar begins, at the last number, as fplot.c starts at the first number.
     """
     parameters, order = processor.parameters, processor.parameters.order
     values = processor.points(instruction, 1)[:, 0]
