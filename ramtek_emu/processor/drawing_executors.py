@@ -46,9 +46,11 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> Paus
     vertices = processor.placed(processor.points(instruction), instruction.low_byte)
     if not len(vertices):
         return None
-    linked = np.concatenate(([parameters.start], vertices))
+    starts = np.concatenate(([parameters.start], vertices[:-1]))
     style = ink(processor, instruction)
-    slices = vectors.write_linked(processor.frame_buffer, linked, style, parameters.enable)
+    slices = vectors.write_lines(
+        processor.frame_buffer, starts, vertices, style, parameters.enable, linked=True
+    )
     return follow(parameters, vertices, slices)
 
 
