@@ -51,17 +51,21 @@ class Instruction:
 
 
 def encode(instruction: Instruction) -> Words:
-    """The words of an instruction."""
+    """The words of an instruction; its low byte says which operands and data follow."""
     format = instruction.format
     if format is ILLEGAL:
         return instruction.data
     head = [format.opcode << 8 | instruction.low_byte]
     if format.is_normal:
         first, second = flag_words_of(instruction.operands)
-        head += [word for word in (first, second) if word]
+        for flag, word in ((Flags.OPERANDS_1, first), (Flags.OPERANDS_2, second)):
+            if word:
+                head[0] |= flag
+                head.append(word)
         for operand in operands_named(first, second):
             head.extend(instruction.operands[operand.name])
         if instruction.length is not None:
+            head[0] |= Flags.DATA
             head.append(instruction.length)
     else:
         for name in format.fixed or ():
@@ -87,20 +91,13 @@ def normal(
 ) -> Instruction:
     """A normal instruction with these operands; numbers from -32768 to 65535 become 16-bit words."""
     named = {key: operand_words(key, value) for key, value in operands.items() if value is not None}
-    first, second = flag_words_of(named)
-    if first:
-        flags |= Flags.OPERANDS_1
-    if second:
-        flags |= Flags.OPERANDS_2
     if length is None and len(data):
         length = 2 * len(data)
-    if length is not None:
-        flags |= Flags.DATA
-        if not 0 <= length <= MOST_BYTES:
-            raise InstructionError(
-                f"the data of {name} must be 0 to {MOST_BYTES} bytes, not {length}; "
-                "send them in several instructions"
-            )
+    if length is not None and not 0 <= length <= MOST_BYTES:
+        raise InstructionError(
+            f"the data of {name} must be 0 to {MOST_BYTES} bytes, not {length}; "
+            "send them in several instructions"
+        )
     return Instruction(FORMAT_OF_NAME[name], int(flags), named, length, data)
 
 
