@@ -10,7 +10,6 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from threading import Timer
-from typing import Final
 
 import numpy as np
 
@@ -22,9 +21,6 @@ from ramtek_emu.errors import ListingError
 from ramtek_emu.host.joystick import actions
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
-
-MOST_SHOWN: Final = 160
-"""The most characters of replies in a failure."""
 
 
 def failure_here(claim: Claim) -> str:
@@ -140,9 +136,5 @@ def difference(claim: Claim, given: Words) -> str:
         return ""
     alike = np.flatnonzero(expected[: len(given)] != given[: len(expected)])
     place = int(alike[0]) if len(alike) else min(len(expected), len(given))
-    texts = [_shortened(text_of(words[place:])) for words in (expected, given)]
-    return f"from reply word {place} on, expected {texts[0] or 'nothing'}, given {texts[1] or 'nothing'}"
-
-
-def _shortened(text: str) -> str:
-    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
+    texts = [text_of(words[place:]) or "nothing" for words in (expected, given)]
+    return f"from reply word {place} on, expected {texts[0]:.160}, given {texts[1]:.160}"

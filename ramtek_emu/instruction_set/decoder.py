@@ -55,9 +55,6 @@ class Decoder:
         self._extended = configuration.extended
         self.clear()
 
-    def __repr__(self) -> str:
-        return f"Decoder(words pending: {self.pending_words})"
-
     @property
     def pending_words(self) -> int:
         """How many words of an incomplete instruction have arrived."""

@@ -6,7 +6,6 @@ True
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -104,9 +103,7 @@ def normal(
 def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
     """The words of an operand; InstructionError if their number or range is wrong."""
     if name not in OPERANDS:
-        near = difflib.get_close_matches(name, OPERANDS, n=1)
-        advice = f"did you mean {near[0]}?" if near else "choose one of them"
-        raise InstructionError(f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; {advice}")
+        raise InstructionError(f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; choose one")
     if isinstance(value, np.ndarray):
         value = value.tolist()
     numbers = (value,) if type(value) is int else tuple(value) if isinstance(value, Sequence) else (value,)
