@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import os
 import select
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -126,6 +128,8 @@ def handling(handlers: Mapping[int, Handler]) -> Iterator[None]:
 
 WAIT_SECONDS: Final = 0.1
 """Limit: how long a signal may be unnoticed while nothing arrives."""
+REST_SECONDS: Final = 1.0
+"""Assumed: a host that sends nothing for so long has drawn its picture and loaded its table."""
 
 
 class Run:
@@ -146,6 +150,8 @@ class Run:
         """Records words; None if no recording was asked for."""
         self.hints: set[str] = set()
         """The subjects of the hints that were printed."""
+        self._rest = 0, math.inf
+        """The count of words received, and the time at which their host is at rest."""
 
     def hint(self, display: Ramtek9300) -> str:
         """Print a hint, once, about words that are all black, and about an instruction that is missing.
@@ -161,6 +167,19 @@ class Run:
         for hint in hints.values():
             tell(hint)
         return "; ".join(hints.values())
+
+    def hint_at_rest(self, display: Ramtek9300, seconds: float) -> str:
+        """As `hint`, but once after words were received, when no more came for REST_SECONDS.
+
+        `seconds` is the time of any clock; call this function in each turn of a window.
+        """
+        words, rests_at = self._rest
+        if display.words_received != words:
+            self._rest = display.words_received, seconds + REST_SECONDS
+        elif seconds >= rests_at:
+            self._rest = words, math.inf
+            return self.hint(display)
+        return ""
 
     def receive(self, number: int, _: object) -> None:
         """Remember a signal."""
@@ -321,20 +340,13 @@ def show(
     """
     from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
 
-    rested_at = 0
-
     def tick() -> None:
-        nonlocal rested_at
         if run.ends:
             monitor.close()
         else:
-            before = display.words_received
             serve_for(TICK_SECONDS)
-            # A program that draws may load the table in the end: wait until it rests.
-            if rested_at != before == display.words_received:
-                rested_at = before
-                if hint := run.hint(display):
-                    monitor.tell(hint)
+            if hint := run.hint_at_rest(display, time.monotonic()):
+                monitor.tell(hint)
 
     monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
     monitor.open()

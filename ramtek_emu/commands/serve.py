@@ -184,7 +184,8 @@ def watch(
         inspected.step, inspected.is_connected = step, is_busy
         inspected.obey = obey or inspected.obey
         name = display.configuration.name.replace("_", " ")
-        inspector.inspect_host(inspected, f"RAMTEK {name}", lambda: run.ends)
+        hint = partial(run.hint_at_rest, display)
+        inspector.inspect_host(inspected, f"RAMTEK {name}", hint, lambda: run.ends)
         return
 
     def obey_and_serve_for(seconds: float) -> None:

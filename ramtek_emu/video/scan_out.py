@@ -27,7 +27,7 @@ from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
-from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_of
+from ramtek_emu.video.view import PLAIN_VIEW, View, pixel_at, view_of
 
 Run = tuple[int, int]
 """A range of lines of a field, or of entries of the table: the first, and the end after the last."""
@@ -69,7 +69,7 @@ DARKEST: Final = 64
 
 
 def gray_table(name: str, words: int) -> PackedColors:
-    """The colors of so many words, 0x00RRGGBB, in one of `TABLES`.
+    """The colors 0x00RRGGBB of the first `words` words, (words,) uint32, in a table of `TABLES`.
 
     >>> [f"{color:06x}" for color in gray_table("gray", 4)]
     ['000000', '404040', 'a0a0a0', 'ffffff']
@@ -228,11 +228,16 @@ class ScanOut:
         self._paint(line, self.lines, pixels)
 
     def _paint(self, first: int, last: int, pixels: PackedColors) -> None:
+        self._own_table().take(self._words_shown(first, last), out=pixels[first:last], mode="wrap")
+
+    def _words_shown(self, first: int, last: int) -> Words:
+        """The words on the lines of the screen from `first` to `last` - 1."""
         elements, lines = pixel_at(
             self._parameters, self._configuration, np.arange(self.elements), np.arange(first, last)
         )
-        words = self._frame_buffer.words[np.ix_(lines, elements)]
-        self._own_table().take(words, out=pixels[first:last], mode="wrap")
+        # Measured: indexing with `np.ix_` takes four times as long, and with mode "raise" 1.4 times.
+        words = self._frame_buffer.words.take(lines, axis=0, mode="clip")
+        return words.take(elements, axis=1, mode="clip")
 
     def _marks(self) -> tuple[Mark, ...]:
         blink_is_on = self.blink_is_on if self._beam is None else self._beam.blink_is_on
@@ -256,7 +261,10 @@ class ScanOut:
             return
         self._indices_of = now
         self._lines_with.cache_clear()
-        copy_shown(self._indices, self._frame_buffer.words, view)
+        if view == PLAIN_VIEW:
+            self._indices[...] = self._frame_buffer.words[: self.lines, : self.elements]
+        else:
+            self._indices[...] = self._words_shown(0, self.lines)
 
     @property
     def is_dark(self) -> bool:
