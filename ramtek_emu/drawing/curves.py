@@ -11,10 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Booleans, Numbers
+from ramtek_emu.arrays import Numbers
 from ramtek_emu.drawing.vectors import numbered, slices
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Point
 
 MOST_PIXELS: Final = 1 << 14
 """The largest number of pixels of a conic.
@@ -38,8 +38,6 @@ def write_circles(
     inside = frame_buffer.window.intersection(enable.window)
     if inside.is_empty:
         return
-    crossing = np.flatnonzero(may_cross(centers, radii, inside))
-    centers, radii = centers[crossing], radii[crossing]
     reach = (radii * 0.7072).astype(np.int64)[:, np.newaxis] + 1
     # Along either axis, compute only the steps that lie within the memory.
     first = np.maximum(np.array((inside.left, inside.top)) - centers, -reach)
@@ -60,20 +58,7 @@ def write_circles(
             elements = np.concatenate((along[:turn], aside[turn:]))
             lines = np.concatenate((aside[:turn], along[turn:]))
             frame_buffer.write_points(elements, lines, word, enable)
-        yield int(crossing[rows.stop - 1]) + 1
-
-
-def may_cross(centers: Numbers, radii: Numbers, window: Window) -> Booleans:
-    """Whether the outlines of the circles may have pixels in the window."""
-    corners = np.array(((window.left, window.top), (window.right, window.bottom)))
-    before, behind = corners[0] - centers, centers - corners[1]
-    nearest = np.maximum(np.maximum(before, behind), 0)
-    farthest = np.maximum(np.abs(before), np.abs(behind))
-    # A pixel of the outline is at most half a pixel from the circle.
-    outer, inner = radii + 1, np.maximum(radii - 1, 0)
-    near_enough = (nearest**2).sum(axis=1) <= outer**2
-    crossing: Booleans = near_enough & ((farthest**2).sum(axis=1) >= inner**2)
-    return crossing
+        yield rows.stop
 
 
 def nearest_root(squares: Numbers) -> Numbers:

@@ -65,12 +65,6 @@ class TextStyle:
 def beside(cells: Dots, step: int) -> Dots:
     """Cells, (n, outer, inner), side by side at a distance of `step` pixels."""
     count, across, along = cells.shape
-    if count == 1:
-        single: Dots = cells[0]
-        return single
-    if step == along:
-        close: Dots = cells.transpose(1, 0, 2).reshape(across, count * along)
-        return close
     spaced = np.zeros((across, count, step), np.bool_)
     spaced[:, :, :along] = cells.transpose(1, 0, 2)
     side_by_side: Dots = spaced.reshape(across, count * step)

@@ -91,11 +91,9 @@ class FrameBuffer:
             self.write_block(entered, order, words.reshape(count, along), enable)
             return order.stepped(corner, 0, (outer + count) % runs)
         if len(words) < 2 * size:
-            for block in blocks(window, order, start, len(words)):
-                part = slice(block.first, block.first + block.inner * block.outer)
-                shape = block.outer, block.inner
+            for point, shape, part in blocks(window, order, start, len(words)):
                 chosen = None if dots is None else dots[part].reshape(shape)
-                self.write_block(block.start, order, words[part].reshape(shape), enable, chosen)
+                self.write_block(point, order, words[part].reshape(shape), enable, chosen)
         else:
             elements, lines = order.places(window, start, len(words))
             written = slice(None) if dots is None else dots
@@ -112,14 +110,12 @@ class FrameBuffer:
             inside = inside_of(self.window, elements, lines)
             words[inside] = self._words[lines[inside], elements[inside]]
         elif size:
-            for block in blocks(window, order, start, len(words)):
-                out = words[block.first : block.first + block.inner * block.outer]
-                place = order.block_window(block.start, block.inner, block.outer)
+            for point, shape, part in blocks(window, order, start, len(words)):
+                place = order.block_window(point, shape[1], shape[0])
                 seen = place.intersection(self.window)
                 if not seen.is_empty:
                     memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
-                    shaped = out.reshape(block.outer, block.inner)
-                    shaped[part_of(place, seen, order)] = order.oriented(memory)
+                    words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
         # From a start within the window on, the words repeat.
         words = np.resize(words, count) if around else words
         return words, order.after(window, start, count) if size else start

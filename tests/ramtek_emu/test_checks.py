@@ -63,6 +63,15 @@ test_what_is_no_run_of_entries = refused(
         ((20_000, 1, 30_000), RUN.format(1, 4095, 20_000)),
     ],
 )
+COLOR = "a color must be 0 to 255, not {} (entry {}, {}); clip it first"
+test_what_is_no_color = refused(
+    lambda colors: checked_colors(7, colors),
+    [
+        ([[0, 1, 2], [0, 256, 0]], COLOR.format(256, 8, "green")),
+        ([[0, 1, -1]], COLOR.format(-1, 7, "blue")),
+        ([0, 1, 2], "colors must be an (n, 3) array of red, green, blue, not of shape (3,); reshape it"),
+    ],
+)
 WHOLE = "a stream of words must be whole numbers, not {}; convert them first, rounding half up"
 BYTES = WHOLE.partition(";")[0] + "; pass np.frombuffer(data, '<u2') if its low bytes come first"
 test_what_is_no_stream = refused(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-from array import array
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -253,19 +252,9 @@ def test_a_number_of_words_that_cannot_be_received_costs_no_reply(count: Any) ->
     assert display.receive(np.int64(2)).tolist() == [0, 0]  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        tuple,
-        lambda words: words.astype(">u2"),
-        lambda words: words[::-1].copy()[::-1],
-        lambda words: array("H", words.tolist()),
-    ],
-    ids=["tuple", "big-endian", "reversed", "array"],
-)
-def test_words_of_every_kind_draw_the_same(kind: Callable[[Any], Any]) -> None:
+def test_words_of_every_second_place_of_an_array_draw_the_same() -> None:
     plain, other = Ramtek9300(), Ramtek9300()
     for stream in RECORDED:
         plain.send(stream)
-        other.send(kind(stream))
+        other.send(np.repeat(stream, 2)[::2])
     assert snapshot_bytes(other) == snapshot_bytes(plain)
