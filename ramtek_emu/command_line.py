@@ -196,9 +196,9 @@ def run_command(command: click.Command, name: str) -> None:
 
     SIGINT, SIGTERM and SIGHUP raise Ended, once; the exit code is 128 plus the number of the signal. If an
     error has an attribute `exit_code`, the user can act on it: its message is shown, and the attribute is the
-    code. If the reader of stdout leaves, the command ends in silence. An error while the module of the window
-    is loaded means that pygame is missing or broken. All other errors are faults of the program. With
-    `--debug` anywhere before a `--`, the traceback is shown.
+    code. If the reader of stdout leaves, the command ends in silence. If pygame cannot be imported, the
+    message has the package to install. All other errors are faults of the program. With `--debug` anywhere
+    before a `--`, the traceback is shown.
     """
     SIGNALS.install()
     try:

@@ -21,8 +21,6 @@ fade and 28 % more of a picture that moves.
 from __future__ import annotations
 
 import math
-import os
-import re
 from collections.abc import Callable, Iterable, Iterator
 from io import BytesIO
 from os import PathLike, fspath
@@ -36,7 +34,7 @@ from PIL import Image
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError
 from ramtek_emu.png import SIGNATURE, chunk, chunks, png_bytes
-from ramtek_emu.writing import Output, refusal, refuse_output, write_atomically
+from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 LEAST_RATE: Final = 0.1
 MOST_RATE: Final = 100.0
@@ -47,9 +45,6 @@ MOST_FIELDS: Final = 100_000
 
 LARGEST_WEBP: Final = 16383
 """The most elements and lines of a WebP."""
-
-NUMBER: Final = re.compile(r"\{number(?::0?([0-9]{1,2}))?\}")
-"""The number of a picture in a pattern of names, with its number of digits."""
 
 
 def write_film(
@@ -73,9 +68,7 @@ def write_film(
     suffix = Path(path).suffix.lower()
     if suffix == PICTURES:
         for number, field in enumerate(_alike(fields), 1):
-            write_atomically(
-                numbered(fspath(path), number), png_bytes(field), overwrite=overwrite, sync=False
-            )
+            write_atomically(numbered(path, number), png_bytes(field), overwrite=overwrite, sync=False)
         return
     with Output(path, overwrite=overwrite) as output:
         FORMATS[suffix](output, _alike(fields), fields_per_second, loop)
@@ -102,46 +95,25 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
 
 def _check_pattern(pattern: Path, overwrite: bool) -> None:
     """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
-    numbers = list(NUMBER.finditer(pattern.name))
-    if len(numbers) != 1 or any(brace in f"{pattern.parent}{NUMBER.sub('', pattern.name)}" for brace in "{}"):
+    try:
+        first, second = (numbered(pattern, number) for number in (1, 2))
+    except (LookupError, ValueError, AttributeError):
+        first = second = ""
+    if first == second:
         raise OutputError(
-            f"numbered pictures must have one number in their name, as in frame-{{number:04}}.png, not"
+            "numbered pictures must have a number in their name, as in frame-{number:04}.png, not"
             f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
         )
-    refuse_output(numbered(fspath(pattern), 1), overwrite)
-    try:
-        others = [] if overwrite else sorted(os.listdir(pattern.parent))
-    except OSError as error:
-        raise refusal(pattern.parent, error) from None
-    for other in filter(_picture_names(pattern).fullmatch, others):
-        refuse_output(pattern.parent / other, overwrite)
+    refuse_output(first, overwrite)
 
 
-def _picture_names(pattern: Path) -> re.Pattern[str]:
-    """The names of the pictures of a pattern with a number."""
-    before, _, after = NUMBER.split(pattern.name)
-    return re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
-
-
-def is_numbered(path: str | PathLike[str], film: str | PathLike[str]) -> bool:
-    """Whether a path may be one of the pictures of a film of numbered pictures.
-
-    >>> is_numbered("frame-0007.png", "frame-{number:04}.png"), is_numbered("7.webp", "8.webp")
-    (True, False)
-    """
-    path, film = Path(path), Path(film)
-    if film.suffix.lower() != PICTURES or not _picture_names(film).fullmatch(path.name):
-        return False
-    return os.path.realpath(path.parent) == os.path.realpath(film.parent)
-
-
-def numbered(pattern: str, number: int) -> str:
+def numbered(pattern: str | PathLike[str], number: int) -> str:
     """The path of a numbered picture.
 
     >>> numbered("frame-{number:04}.png", 7)
     'frame-0007.png'
     """
-    return NUMBER.sub(lambda match: f"{number:0{int(match[1] or 1)}}", pattern)
+    return fspath(pattern).format(number=number)
 
 
 def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:

@@ -127,14 +127,10 @@ def write_numbered(data: bytes, folder: Path, name: str, suffix: str) -> Path:
     number = 1
     while True:
         path = folder / f"{name}-{number:04d}{suffix}"
-        number += 1
-        if path.exists():
-            continue
-        try:
+        with suppress(OutputExistsError):
             write_atomically(path, data, overwrite=False)
-        except OutputExistsError:
-            continue
-        return path.resolve()
+            return path.resolve()
+        number += 1
 
 
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:

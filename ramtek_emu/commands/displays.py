@@ -8,7 +8,7 @@ import select
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
@@ -106,24 +106,6 @@ def refuse_outputs(force: bool, *paths: str | None, pictures: Sequence[str | Non
         raise click.UsageError(
             f"two outputs must be two files, not {same[0]} and {same[1]}, which are the same; rename one"
         )
-
-
-Handler = Callable[[int, object], object] | signal.Handlers
-
-
-@contextmanager
-def handling(handlers: Mapping[int, Handler]) -> Iterator[None]:
-    """Handle signals within a `with` block. Signals that the program's parent ignores stay ignored."""
-    before = {
-        number: signal.signal(number, handler)
-        for number, handler in handlers.items()
-        if signal.getsignal(number) is not signal.SIG_IGN
-    }
-    try:
-        yield
-    finally:
-        for number, previous in before.items():
-            signal.signal(number, previous)
 
 
 WAIT_SECONDS: Final = 0.1
@@ -233,7 +215,11 @@ def running(
     command ends with its exit code. After any other error, no output is written.
     """
     run = Run()
-    with handling(dict.fromkeys(ENDING, run.receive)), ExitStack() as opened:
+    with ExitStack() as handled, ExitStack() as opened:
+        for number in ENDING:
+            # A signal that the program's parent ignores stays ignored.
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                handled.callback(signal.signal, number, signal.signal(number, run.receive))
         if record is not None:
             recording = opened.enter_context(Output(record, overwrite=force))
 

@@ -95,17 +95,16 @@ def test_fields_are_taken_one_by_one(suffix: str, tmp_path: Path) -> None:
     assert 1 <= most <= 4
 
 
-PATTERN = "numbered pictures must have one number in their name, as in frame-{number:04}.png, not "
+PATTERN = "numbered pictures must have a number in their name, as in frame-{number:04}.png, not "
 REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
     ("film.gif", {}, OutputError, "must end in .webp, .apng, or in .png with a number, not in '.gif'"),
     ("film.webp", {"fields_per_second": math.nan}, ColorsError, "0.1 to 100 fields per second, not nan"),
     ("there.apng", {}, OutputExistsError, "an output must be a new file, not"),
     ("film.png", {}, OutputError, PATTERN),
-    ("{number}-{number}.png", {}, OutputError, PATTERN),
     ("{name}-{number}.png", {}, OutputError, PATTERN),
-    ("{number}/{number}.png", {}, OutputError, PATTERN),
+    ("{number.png", {}, OutputError, PATTERN),
     ("none/{number}.png", {}, OutputError, "there is no folder"),
-    ("there-{number:02}.png", {}, OutputExistsError, "there-7.png, which exists"),
+    ("there-{number:02}.png", {}, OutputExistsError, "there-01.png, which exists"),
 ]
 
 
@@ -113,7 +112,7 @@ REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
 def test_a_film_that_cannot_be_written_takes_no_field_and_leaves_no_file(
     name: str, options: dict[str, Any], error: type[RamtekError], sentence: str, tmp_path: Path
 ) -> None:
-    old = ["there-7.png", "there.apng"]
+    old = ["there-01.png", "there.apng"]
     for path in old:
         (tmp_path / path).write_bytes(b"old")
     fields = iter(noise(2))

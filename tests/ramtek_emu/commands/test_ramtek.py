@@ -45,7 +45,7 @@ REFUSED = (
         2,
         "Error: a display must be given by --config",
     ),
-    ("play - -o x.png --loads-per-second 30", 2, "Error: --loads-per-second is for the window; add --window"),
+    ("play - -o x.png --loads-per-second 30", 2, "Error: --loads-per-second is for the window; leave"),
     ("play - --loads-per-second 0", 2, "Error: Invalid value for '--loads-per-second'"),
     ("play none -o a.png --snapshot ./a.png", 2, "Error: two outputs must be two files, not a.png and "),
     ("play none -o a.png --record a.png", 2, "Error: two outputs must be two files"),
