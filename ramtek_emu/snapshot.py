@@ -175,12 +175,15 @@ def _object(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
     return values
 
 
-WORD: Final = (-0x8000, 0xFFFF)
+WORD: Final = (0, 0xFFFF)
 COORDINATE: Final = (-0x8000, 0x7FFF)
+SCREEN: Final = (-(1 << 17), 1 << 17)
 COUNT: Final = (0, 1 << 62)
 LIMITS: Final = {
     "conic": (-(1 << 31), (1 << 32) - 1),
     "zoom": (1, 16),
+    "element": SCREEN,
+    "line": SCREEN,
     "nanoseconds": COUNT,
     "illegal_words": COUNT,
     "without_effect": COUNT,

@@ -143,7 +143,7 @@ class Run:
         if "dark" not in self.hints and display.scan_out.is_dark:
             hints["dark"] = "words were drawn, and nothing is lit: --table gray shows them (F2 in a window)"
         if "foreign" not in self.hints and foreign is not None:
-            hints["foreign"] = f"{foreign} is no instruction of a 9300; --configuration family has it"
+            hints["foreign"] = f"a 9300 does not take {foreign}, but the display FAMILY does"
         self.hints |= hints.keys()
         for hint in hints.values():
             tell(hint)

@@ -99,7 +99,7 @@ def play(
 
     from ramtek_emu.host import pipe
     from ramtek_emu.host.port import waiting_bytes
-    from ramtek_emu.host.server import HostSession
+    from ramtek_emu.host.server import READ_BYTES, HostSession
 
     number = file.fileno()
     with file, running(display, output, snapshot, record, force) as run:
@@ -118,16 +118,18 @@ def play(
                 run.fail(failure)
                 return b""
 
-        session = HostSession(display, run.record)
         if in_window:
             paced: pipe.Read = read_for_window
             if loads_per_second is not None:
-                paced = pipe.PacedReader(paced, loads_per_second, display.configuration)
-            show(display, run, pipe.PolledPipe(session, paced).serve_for)
+                paced = pipe.paced(paced, loads_per_second, display.configuration)
+            with pipe.PipeServer(display, paced, record=run.record) as server:
+                show(display, run, server.serve_for)
             return
+        session = HostSession(display, run.record)
         waiting = 0
         if film is None:
-            pipe.serve_pipe(session, read, None, lambda: run.ends)
+            while (data := read(READ_BYTES)) and not any(run.ends for _ in session.feed(data)):
+                pass
         else:
             is_cut = pipe.is_load if every is None else pipe.every(every)
             cut = pipe.CutReader(read, display.configuration, is_cut)

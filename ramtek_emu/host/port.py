@@ -67,11 +67,22 @@ PACKET_BYTES: Final = 1 << 19
 
 
 def prepared(connected: socket.socket) -> socket.socket:
-    """The socket, set not to wait and, with TCP, to send small pieces at once; OSError if it is lost."""
+    """The socket, set not to wait and, with TCP, to send small pieces at once."""
     connected.setblocking(False)
-    if not keeps_writes(connected):
+    # A Unix socket has no such option, and on some systems no lost connection has it.
+    with suppress(OSError):
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     return connected
+
+
+def ready(connected: socket.socket, wanted: int, seconds: float) -> int:
+    """The events of those wanted for which a socket is ready, waiting up to `seconds` for some."""
+    if not wanted:
+        return 0
+    with selectors.DefaultSelector() as selector:
+        selector.register(connected, wanted)
+        found = selector.select(seconds)
+    return found[0][1] if found else 0
 
 
 def keeps_writes(connected: socket.socket) -> bool:
@@ -79,10 +90,10 @@ def keeps_writes(connected: socket.socket) -> bool:
     return connected.type != socket.SOCK_STREAM
 
 
-def read_socket(connected: socket.socket, most: int) -> bytes | None:
+def read_socket(connected: socket.socket, most: int, flags: int = 0) -> bytes | None:
     """The next packet, or at most `most` bytes of a stream; b"" at the end, None if nothing has arrived."""
     with suppress(BlockingIOError):
-        return connected.recv(PACKET_BYTES if keeps_writes(connected) else most)
+        return connected.recv(PACKET_BYTES if keeps_writes(connected) else most, flags)
     return None
 
 
@@ -94,11 +105,10 @@ def write_socket(connected: socket.socket, data: bytes | memoryview) -> int:
 
 
 def break_off(connected: socket.socket) -> None:
-    """Make closing a TCP connection look like a loss to the other side. Do nothing on a Unix socket."""
-    if not keeps_writes(connected):
-        # On some systems, a lost connection accepts no options.
-        with suppress(OSError):
-            connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+    """Make closing a TCP connection look like a loss to the other side. It changes no Unix socket."""
+    # On some systems, a lost connection accepts no options.
+    with suppress(OSError):
+        connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
 def waiting_bytes(file: socket.socket | int) -> int:
@@ -220,11 +230,7 @@ class SocketPort:
         """The events of the socket, waiting up to `seconds` for some: reading and, if asked for, writing."""
         if self._is_closed:
             raise PortError(f"a port must be open, not closed ({self.address}); open it again")
-        with selectors.DefaultSelector() as selector:
-            wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if writing else 0)
-            selector.register(self.socket, wanted)
-            ready = selector.select(seconds)
-        return ready[0][1] if ready else 0
+        return ready(self.socket, selectors.EVENT_READ | (selectors.EVENT_WRITE if writing else 0), seconds)
 
     def _send_some(self, data: bytes | memoryview) -> int:
         """Send bytes when the display takes them, and return their number. Replies are read meanwhile."""
@@ -341,16 +347,13 @@ class UnixPort(SocketPort):
 
 def packet_socket() -> socket.socket:
     """A Unix socket that keeps the boundaries of writes; PortError where the system has none."""
-    reason = "no SOCK_SEQPACKET"
-    if sys.platform != "win32":
-        try:
-            return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        except (AttributeError, OSError) as cause:
-            reason = (getattr(cause, "strerror", None) or reason).lower()
-    raise PortError(
-        "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
-        f"({reason}); use TCP or a pipe"
-    )
+    try:
+        return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    except (AttributeError, OSError) as cause:
+        raise PortError(
+            "a system must have Unix sockets that keep the boundaries of writes (SOCK_SEQPACKET), and this "
+            "one does not; use TCP or a pipe"
+        ) from cause
 
 
 LISTEN_SECONDS: Final = 1.0

@@ -14,7 +14,7 @@ says how the 9300 mixed cursors into the video.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
@@ -22,7 +22,7 @@ import numpy as np
 
 from ramtek_emu.arrays import Colors, Dots, PackedColors, Words
 from ramtek_emu.configuration import Configuration, EntryFormat
-from ramtek_emu.memory.cursors import SHAPE_CENTER, SHAPE_SIZE, VISIBLE, Cursors
+from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, SHAPE_SIZE, VISIBLE, Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
@@ -91,7 +91,7 @@ class ScanOut:
         frame_buffer: FrameBuffer,
         lookup_table: LookupTable,
         cursors: Cursors,
-        parameters: Callable[[], Parameters],
+        parameters: Parameters,
         beam: Beam | None = None,
     ) -> None:
         self.lines = configuration.shown_lines
@@ -134,7 +134,7 @@ class ScanOut:
         beam = self._beam
         rest = (
             self._frame_buffer.written,
-            view_of(self._parameters()),
+            view_of(self._parameters),
             self._has_sections and self.first_entry,
             beam and beam.lines_done,
             self.shown_table,
@@ -233,7 +233,7 @@ class ScanOut:
     def _words_shown(self, first: int, last: int) -> Words:
         """The words on the lines of the screen from `first` to `last` - 1."""
         elements, lines = pixel_at(
-            self._parameters(), self._configuration, np.arange(self.elements), np.arange(first, last)
+            self._parameters, self._configuration, np.arange(self.elements), np.arange(first, last)
         )
         # Measured: indexing with `np.ix_` takes four times as long, and with mode "raise" 1.4 times.
         words = self._frame_buffer.words.take(lines, axis=0, mode="clip")
@@ -254,7 +254,7 @@ class ScanOut:
 
     def _update_indices(self) -> None:
         # This is `view_of` without the call, which would take a fiftieth of a scan-out with cold caches.
-        parameters = self._parameters()
+        parameters = self._parameters
         view = parameters.origin, parameters.zoom, parameters.origin_at_bottom
         now = self._frame_buffer.written, view
         if self._indices_of == now:
@@ -308,7 +308,7 @@ def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
     return tuple([
         Mark(number, cursor.element, cursor.line, cursors.shape_changes)
         for number, cursor in enumerate(cursors.all)
-        if cursor.state & VISIBLE and (blink_is_on or not cursor.blinks)
+        if cursor.state & VISIBLE and (blink_is_on or not cursor.state & BLINK)
     ])  # fmt: skip
 
 

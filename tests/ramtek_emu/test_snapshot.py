@@ -243,7 +243,8 @@ def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, ne
             (0, name, 0, 2**62)
             for name in ("nanoseconds", "illegal_words", "without_effect", "lines_painted")
         ],
-        (0, "another", -(2**15), 2**16 - 1),
+        (0, "element", -(2**17), 2**17),
+        (0, "foreground", 0, 2**16 - 1),
         (Point(0, 0), "start", -(2**15), 2**15 - 1),
     ],
 )

@@ -162,10 +162,10 @@ def test_a_hint_comes_once_when_words_are_dark_or_an_instruction_is_missing(
     with running(display) as run:
         assert run.hint(display) == ""
         display.send(OUTLINE)
-        display.processor.foreign = "WCI"
+        display.send(words("5065 3A00"))
         hints = run.hint(display)
         assert hints.split("; ", 1)[0].endswith("--table gray shows them (F2 in a window)")
-        assert hints.endswith("WCI is no instruction of a 9300; --configuration family has it")
+        assert hints.endswith("a 9300 does not take FILL, but the display FAMILY does")
     assert capsys.readouterr().err.splitlines() == hints.split("; ", 1)
 
 

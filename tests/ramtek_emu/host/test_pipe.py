@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,10 +14,10 @@ from ramtek_emu import FAMILY, Ramtek9300, instructions
 from ramtek_emu.arrays import Colors
 from ramtek_emu.host.pipe import (
     CutReader,
-    PacedReader,
-    PolledPipe,
+    PipeServer,
     every,
     is_load,
+    paced,
     stream_fields,
 )
 from ramtek_emu.host.server import HostSession
@@ -23,7 +26,7 @@ from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.monitor.window import Monitor
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.processes import stream
-from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED
+from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
 from tests.ramtek_emu.serving import until
 from tests.ramtek_emu.strategies import SMALL
 
@@ -33,16 +36,31 @@ def pop_of(pieces: list[bytes]) -> Callable[[int], bytes]:
     return lambda _: pieces.pop()
 
 
-def test_words_that_wait_for_a_place_in_the_queue_are_counted_as_unexecuted() -> None:
-    pieces = [b"", *[b"\0" * 2000] * 6]
-    pipe = PolledPipe(HostSession(Ramtek9300()), pop_of(pieces))
-    until(lambda: pipe.unexecuted == 5000)
-    assert len(pieces) == 2
+def test_words_that_wait_for_a_place_are_counted_as_unexecuted() -> None:
+    pieces = [b"", *[b"\0" * 60_000] * 20]
+    with PipeServer(Ramtek9300(), pop_of(pieces)) as pipe:
+        # The rest does not fit into the socket, and is not read.
+        until(lambda: len(pieces) > 0 and pipe.unexecuted == 30_000 * (21 - len(pieces)))
+        until(lambda: not pipe.step() and pipe.served == 1)
+        assert pipe.unexecuted == 0
 
 
-def test_a_pipe_without_a_reader_of_replies_owes_none() -> None:
-    pipe = PolledPipe(HostSession(Ramtek9300()), pop_of([b""]), None)
-    assert pipe.has_replied is True
+def test_the_last_replies_to_a_host_are_written_before_the_end() -> None:
+    stream = np.concatenate((words("0902 0044 7 0 0 9 9"), next(instructions.read_image(0, 0, 10, 10))[0]))
+    pieces, replies, is_over = [b"", stream.astype("<u2").tobytes()], [], threading.Event()
+
+    def write(data: bytes) -> None:
+        is_over.wait(60)
+        replies.append(data)
+
+    with PipeServer(Ramtek9300(), pop_of(pieces), write) as pipe:
+        until(lambda: not pipe.step() and pipe.served == 1)
+        # A signal ends the wait.
+        pipe.finish(lambda: True)
+        assert not replies
+        is_over.set()
+        pipe.finish(lambda: False)
+    assert b"".join(replies) == 100 * b"\7\0"
 
 
 def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) -> None:
@@ -50,17 +68,18 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
     replies: list[bytes] = []
     left = [b"", stream.astype("<u2").tobytes()]
     display = Ramtek9300()
-    pipe = PolledPipe(HostSession(display), lambda _: left.pop(), replies.append)
+    pipe = PipeServer(display, lambda _: left.pop(), replies.append)
     monitor = Monitor(display, on_tick=lambda: pipe.serve_for(0.01))
     monitor.open()
 
     def has_ended() -> bool:
         monitor.step(5)
-        return pipe.ended and bool(replies)
+        return pipe.served == 1 and bool(replies)
 
     until(has_ended)
     assert b"".join(replies) == display.words[100, 100:103].astype("<u2").tobytes()
     monitor.close()
+    pipe.close()
 
 
 class Clock:
@@ -70,11 +89,12 @@ class Clock:
         self.now = 100.0
         self.slept: list[float] = []
 
-    def __call__(self) -> float:
+    def monotonic(self) -> float:
         return self.now
 
     def sleep(self, seconds: float) -> None:
-        self.slept.append(seconds)
+        if seconds > 0:
+            self.slept.append(seconds)
         self.now += seconds
 
 
@@ -89,13 +109,11 @@ def in_pieces(data: bytes, cuts: list[int]) -> Callable[[int], bytes]:
     return lambda _: pieces.pop(0) if pieces else b""
 
 
-def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
-    """The pieces that a paced reader returns for a stream in pieces."""
-    read = PacedReader(in_pieces(data, cuts), rate, FAMILY, clock, clock.sleep)
-    read_pieces = []
-    while piece := read(1 << 16):
-        read_pieces.append(piece)
-    return read_pieces
+def paced_pieces(read: Callable[[int], bytes], rate: int, clock: Clock) -> list[bytes]:
+    """The pieces of a stream that is read at the pace of a host."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ramtek_emu.host.pipe.time", clock)
+        return list(iter(partial(paced(read, rate, FAMILY), 1 << 16), b""))
 
 
 cuts = st.lists(st.integers(0, 10_000), max_size=12)
@@ -104,14 +122,15 @@ cuts = st.lists(st.integers(0, 10_000), max_size=12)
 @given(st.lists(st.binary(max_size=60) | st.integers(0, 9).map(load), max_size=9), cuts)
 def test_a_paced_stream_is_the_stream_however_it_is_cut(parts: list[bytes], cuts: list[int]) -> None:
     data = b"".join(parts)
-    assert b"".join(paced(data, cuts, 60, Clock())) == data
+    assert b"".join(paced_pieces(in_pieces(data, cuts), 60, Clock())) == data
 
 
 @given(cuts)
 def test_each_load_but_the_first_waits_for_its_time(cuts: list[int]) -> None:
     drawing = stream(np.concatenate(RECORDED))
     clock = Clock()
-    pieces = paced(drawing + b"".join(map(load, range(5))), cuts, 20, clock)
+    read = in_pieces(drawing + b"".join(map(load, range(5))), cuts)
+    pieces = paced_pieces(read, 20, clock)
     loads = _loads(drawing) + 5
     assert len(clock.slept) == loads - 1
     assert np.allclose(clock.slept, 1 / 20)
@@ -132,9 +151,7 @@ def test_a_late_load_does_not_hurry_the_next_loads() -> None:
         clock.now += 3.0
         return data.pop(0) if data else b""
 
-    read = PacedReader(slow_read, 1, FAMILY, clock, clock.sleep)
-    while read(1 << 16):
-        pass
+    paced_pieces(slow_read, 1, clock)
     assert clock.slept == []
 
 

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import itertools
 import os
-import selectors
 import socket
 import stat
 import threading
@@ -129,9 +128,11 @@ def test_hosts_in_a_row_all_draw_also_if_they_leave_without_their_replies(
         assert server.display.words[9, :60].tolist() == list(range(1, 61))
 
 
-def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host() -> None:
-    server = TcpServer(Ramtek9300())
-    port = TcpPort(server.address, timeout=60)
+@pytest.mark.parametrize("is_unix", [False, True])
+def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host(tmp_path: Path, is_unix: bool) -> None:
+    path = tmp_path / "display"
+    server = UnixServer(Ramtek9300(), path) if is_unix else TcpServer(Ramtek9300())
+    port = UnixPort(path, timeout=60) if is_unix else TcpPort(server.address, timeout=60)
     until(server.step)
     # A silent host gives nothing to do.
     assert not server.step()
@@ -307,14 +308,13 @@ def host_and_client(
     client = Client(there, HostSession(Ramtek9300(), record), idle_seconds, partial_seconds)
     with host:
         yield host, client
-    client.leave()
+    client.close()
 
 
 def serve_all(client: Client) -> None:
-    """Read once and execute what was read."""
-    client.serve(client.wanted)
-    while client.has_work:
-        client.work()
+    """Read, execute and reply until nothing is left."""
+    while client.step():
+        pass
 
 
 def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
@@ -322,10 +322,7 @@ def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
         host.send(packet("0B03 0040 0 0 0 0 2"))
         host.send(DOT)
         host.close()
-        for _ in range(20):
-            client.serve(client.wanted)
-            client.work()
-        assert client.ended
+        until(lambda: not client.step() and client.ended)
         assert client.session.display.words[5, 5] == 7
 
 
@@ -335,12 +332,11 @@ def test_the_words_that_arrived_and_were_not_executed_are_counted() -> None:
         host.send(DOT + packet("0700 0902 0044"))
         host.send(packet("0700 0700"))
         counts = [client.unexecuted]
-        client.serve(client.wanted)
-        while client.has_work:
+        while client.unexecuted > 2:
+            client.step()
             counts.append(client.unexecuted)
-            client.work()
     # The packet that was not read has two words. The last two words of the other begin an instruction.
-    assert counts == [12, 12, 5, 4, 2]
+    assert counts == [12, 5, 4, 2]
     assert client.session.unexecuted == 0
 
 
@@ -376,9 +372,7 @@ def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: 
 
         monkeypatch.setattr(client.session.display, "send_stepwise", slow)
         host.send(DOT + packet("0B03 0040 0 0 0 0 2"))
-        client.serve(client.wanted)
-        while client.has_work:
-            client.work()
+        while client.step():
             assert client.deadline > now
         assert now > 1020
         now += 11
@@ -390,12 +384,7 @@ def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is
         for odd in (b"!", b""):
             host.send(DOT + packet("0B03 0040 5 5 5 5 2") + odd)
             host.send(packet("0B03 0040 5 5 6 5 4"))
-        while client.waiting < 12:
-            client.serve(selectors.EVENT_READ)
-            while client.work():
-                pass
-        while client.waiting:
-            client.serve(selectors.EVENT_WRITE)
+        serve_all(client)
         assert [host.recv(100) for _ in range(4)] == [packet("7"), packet("7 0")] * 2
 
 
@@ -532,3 +521,13 @@ def test_a_name_appears_when_its_socket_listens_and_a_refused_server_leaves_no_f
     with pytest.raises(OutputExistsError):
         UnixServer(Ramtek9300(), tmp_path / "display")
     assert os.listdir(tmp_path) == ["display"]
+
+
+def test_a_socket_takes_each_name_that_fits_and_no_other(tmp_path: Path) -> None:
+    folder = tmp_path / ("x" * (104 - len(os.fsencode(tmp_path))))
+    folder.mkdir()
+    with UnixServer(Ramtek9300(), folder / "d"):
+        UnixPort(folder / "d", timeout=60).socket.close()
+    with pytest.raises(OutputError, match="path too long"):
+        UnixServer(Ramtek9300(), folder / "\u00e9\u00e9")
+    assert os.listdir(folder) == []
