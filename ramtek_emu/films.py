@@ -11,11 +11,10 @@ rectangles; the films are put together here, because Pillow keeps all fields in 
 number of fields need not be known before the last. `TimedFilm` takes fields with the times at which they were
 shown.
 
-Measured for 640 x 480 fields of the coupe, a fade of its paint: a WebP takes 57 KB a field, an animated PNG
-78 KB in 1.2 times the time.
+Measured for 640 x 480 fields of the coupe: a WebP takes 50 KB a field for a turn and 56 KB for a fade of its
+paint. An animated PNG takes about 1.4 times the bytes and 1.2 times the time.
 Measured and rejected: slower methods of WebP, which save a fifth to a quarter of the bytes for three to seven
-times the time; Pillow's encoder of animated WebP, which takes 1.7 times as long, for 16 % fewer bytes of a
-fade and 28 % more of a picture that moves.
+times the time; docs/PERFORMANCE.md has more.
 """
 
 from __future__ import annotations
