@@ -150,7 +150,7 @@ class Run:
         return "; ".join(hints.values())
 
     def hint_at_rest(self, display: Ramtek9300, seconds: float) -> str:
-        """As `hint`, but once after words were received, when no more came for REST_SECONDS.
+        """Print the hints once the host has sent no words for REST_SECONDS; returns them as `hint` does.
 
         `seconds` is the time of any clock; call this function in each turn of a window.
         """

@@ -22,7 +22,7 @@ from ramtek_emu.commands.displays import (
     tell_unexecuted,
     unreadable,
 )
-from ramtek_emu.errors import ColorsError, MissingInputError
+from ramtek_emu.errors import MissingInputError
 
 if TYPE_CHECKING:
     from ramtek_emu.arrays import Colors
@@ -64,7 +64,8 @@ FRAMES_PER_SECOND: Final = 24.0
 )
 @click.option(
     "--fps",
-    type=float,
+    # The limits are those of `films`, whose module would import Pillow for each command.
+    type=click.FloatRange(0.1, 100),
     metavar="RATE",
     help=f"Frames per second of the film, {FRAMES_PER_SECOND:g} if not given.",
 )
@@ -151,10 +152,7 @@ def refuse_film(film: str | None, every: int | None, fps: float | None, once: bo
         return
     from ramtek_emu.films import check_film
 
-    try:
-        check_film(film, FRAMES_PER_SECOND if fps is None else fps, force)
-    except ColorsError as refusal:
-        raise click.UsageError(str(refusal)) from None
+    check_film(film, fps or FRAMES_PER_SECOND, force)
 
 
 def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loop: bool, force: bool) -> None:

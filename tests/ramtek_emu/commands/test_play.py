@@ -97,7 +97,7 @@ def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(fr
 REFUSED: list[tuple[list[object], int, str]] = [
     (["--film", "a.gif"], 73, "a film must end in"),
     (["--film", "frames.apng"], 73, "which exists"),
-    (["--film", "a.webp", "--fps", 101], 2, "fields per second"),
+    (["--film", "a.webp", "--fps", 101], 2, "101.0 is not in the range 0.1<=x<=100"),
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
     (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second is for the window"),
     (["--film", "a.webp", "--record", "a.webp"], 2, "two outputs must be two files"),
