@@ -73,7 +73,7 @@ def test_a_picture_at_an_instruction() -> None:
         display = Ramtek9300()
         display.send(SQUARES[:end])
         said = run("inspect", "-", "--at", str(number), "-o", "a.png", "--force", data=DATA)[1]
-        assert said == ["wrote a.png"]
+        assert said[-1] == "wrote a.png"
         assert (field_of(Path("a.png")) == display.field()).all()
     run("inspect", "-", "-o", "a.png", data=DATA, code=73)
 
