@@ -47,7 +47,7 @@ class PipeServer(Server):
         """Begin to read the words, and to write the replies; without `write` they are dropped."""
         super().__init__(display, None, "", math.inf, record)
         served, self._copied = socket.socketpair()
-        self._client = Client(served, self.session, math.inf)
+        self._client = Client(served, self.session, math.inf, math.inf)
         self._read_bytes = 0
         self._replying = threading.Thread(target=self._copy_replies, args=(write,), daemon=True)
         self._replying.start()
