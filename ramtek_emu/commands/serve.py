@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import select
+import stat
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -49,6 +51,10 @@ WITHOUT_EFFECT: Final = (
 )
 """Options that have no effect beside the second option."""
 STEP_SECONDS: Final = 0.1
+WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
+"""The most bytes that any pipe takes without waiting, if it can be written."""
+MOST_WRITTEN: Final = 1 << 16
+"""The most bytes that are written at once to a pipe that never waits."""
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while no words arrive."""
 
@@ -147,6 +153,8 @@ def serve(
                 announce(server.address, host)
             if window or inspected is not None:
                 watch(server, run, obey, inspected)
+            elif isinstance(server, PipeServer) and joystick is None:
+                server.serve(lambda: run.ends)
             else:
                 while not run.ends and not ((once or stdio) and server.served):
                     obey()
@@ -203,16 +211,26 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
             return os.read(stdin, most) if run.wait(stdin) else b""
         return b""
 
-    replies = os.dup(stdout)
+    replies, at_once = replies_to(stdout)
     # Redirect all printed text to stderr, so that it does not mix with the words.
     os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, stdout)
 
     def write(data: bytes) -> None:
         view = memoryview(data)
-        while view:
-            view = view[os.write(replies, view) :]
+        while view and run.wait(replies, to_write=True):
+            with suppress(BlockingIOError):
+                view = view[os.write(replies, view[:at_once]) :]
 
     return read, write
+
+
+def replies_to(stdout: int) -> tuple[int, int]:
+    """A descriptor for replies, and how many bytes it takes without waiting once it can be written."""
+    with suppress(OSError):
+        if sys.platform == "linux" and stat.S_ISFIFO(os.fstat(stdout).st_mode):
+            # A pipe that is opened anew can be set not to wait, and waits as before for other programs.
+            return os.open(f"/proc/self/fd/{stdout}", os.O_WRONLY | os.O_NONBLOCK), MOST_WRITTEN
+    return os.dup(stdout), WRITTEN_AT_ONCE
 
 
 def announce(address: str, host: str) -> None:

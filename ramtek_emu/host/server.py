@@ -308,7 +308,7 @@ Self = TypeVar("Self", bound="Server")
 
 
 class Server:
-    """A display that serves the hosts of a listening socket; `address` is the address for a host's port."""
+    """A display that serves one host after the other; `address` is the address for a host's port."""
 
     def __init__(
         self,
@@ -373,8 +373,10 @@ class Server:
         self.close()
 
     def _accept(self, seconds: float) -> bool:
+        """Take the next host, waiting up to `seconds` for it; returns whether there is one."""
         if self._listener is None or not ready(self._listener, selectors.EVENT_READ, seconds):
             return False
+        self._listener.setblocking(False)
         try:
             connected, _ = self._listener.accept()
         except OSError:
