@@ -201,9 +201,11 @@ def watch(server: Server, run: Run, obey: Callable[[], object], inspected: Runni
 def standard_streams(run: Run) -> tuple[Read, Write]:
     """Functions that read stdin, until a signal ends the display, and write stdout.
 
-    After this call, nothing else can write to stdout.
+    After this call, nothing else can write to stdout. If stdout is closed, the replies are dropped.
     """
-    stdin, stdout = -1 if sys.stdin is None else sys.stdin.fileno(), sys.stdout.fileno()
+    from ramtek_emu.host.pipe import dropped
+
+    stdin = -1 if sys.stdin is None else sys.stdin.fileno()
 
     def read(most: int) -> bytes:
         # A terminal or a socket raises an error if its other end was closed.
@@ -211,9 +213,12 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
             return os.read(stdin, most) if run.wait(stdin) else b""
         return b""
 
-    replies, at_once = replies_to(stdout)
-    # Redirect all printed text to stderr, so that it does not mix with the words.
-    os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, stdout)
+    try:
+        replies, at_once = replies_to(sys.stdout.fileno())
+        # Redirect all printed text to stderr, so that it does not mix with the words.
+        os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
+    except OSError:
+        return read, dropped
 
     def write(data: bytes) -> None:
         view = memoryview(data)

@@ -43,7 +43,7 @@ def test_words_that_wait_for_a_place_are_counted_as_unexecuted() -> None:
     with PipeServer(Ramtek9300(), pop_of(pieces)) as pipe:
         pipe.step()
         # The rest does not fit into the socket, and is not read.
-        until(lambda: 0 < len(pieces) and pipe.unexecuted == 30_000 * (21 - len(pieces)) > 60_000)
+        until(lambda: len(pieces) > 0 and pipe.unexecuted == 30_000 * (21 - len(pieces)) > 60_000)
         until(lambda: not pipe.step() and pipe.served == 1)
         assert pipe.unexecuted == 0
 
