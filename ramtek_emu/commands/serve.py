@@ -130,6 +130,11 @@ def serve(
             from ramtek_emu.inspection.running_host import RunningHost
 
             inspected = RunningHost(display, run.record)
+        obey: Callable[[], object] = lambda: None  # noqa: E731
+        if joystick is not None:
+            from ramtek_emu.host.joystick import JoystickLines
+
+            obey = JoystickLines(joystick, display.joystick, lambda: server.session.reset(), tell).obey
         recording = run.record if inspected is None else inspected.record
         server: TcpServer | UnixServer | PipeServer
         if unix is not None:
@@ -139,11 +144,6 @@ def serve(
         else:
             server = PipeServer(display, *standard_streams(run), recording)
         with server:
-            obey: Callable[[], object] = lambda: None  # noqa: E731
-            if joystick is not None:
-                from ramtek_emu.host.joystick import JoystickLines
-
-                obey = JoystickLines(joystick, display.joystick, server.session.reset, tell).obey
             if window or inspected is not None:
                 from ramtek_emu.monitor.window import open_screen
 
@@ -201,10 +201,8 @@ def watch(server: Server, run: Run, obey: Callable[[], object], inspected: Runni
 def standard_streams(run: Run) -> tuple[Read, Write]:
     """Functions that read stdin, until a signal ends the display, and write stdout.
 
-    After this call, nothing else can write to stdout. If stdout is closed, the replies are dropped.
+    After this call, nothing else can write to stdout.
     """
-    from ramtek_emu.host.pipe import dropped
-
     stdin = -1 if sys.stdin is None else sys.stdin.fileno()
 
     def read(most: int) -> bytes:
@@ -213,12 +211,9 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
             return os.read(stdin, most) if run.wait(stdin) else b""
         return b""
 
-    try:
-        replies, at_once = replies_to(sys.stdout.fileno())
-        # Redirect all printed text to stderr, so that it does not mix with the words.
-        os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
-    except OSError:
-        return read, dropped
+    replies, at_once = replies_to(sys.stdout.fileno())
+    # Redirect all printed text to stderr, so that it does not mix with the words.
+    os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
 
     def write(data: bytes) -> None:
         view = memoryview(data)
