@@ -120,6 +120,7 @@ def serve(
     refuse_outputs(force, record, pictures=[output, snapshot])
     display = display_asked_for(configuration, start, table)
 
+    from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.pipe import PipeServer
     from ramtek_emu.host.port import waiting_bytes
     from ramtek_emu.host.server import TcpServer, UnixServer
@@ -130,11 +131,7 @@ def serve(
             from ramtek_emu.inspection.running_host import RunningHost
 
             inspected = RunningHost(display, run.record)
-        obey: Callable[[], object] = lambda: None  # noqa: E731
-        if joystick is not None:
-            from ramtek_emu.host.joystick import JoystickLines
-
-            obey = JoystickLines(joystick, display.joystick, lambda: server.session.reset(), tell).obey
+        lines = None if joystick is None else JoystickLines(joystick, tell)
         recording = run.record if inspected is None else inspected.record
         server: TcpServer | UnixServer | PipeServer
         if unix is not None:
@@ -143,6 +140,11 @@ def serve(
             server = TcpServer(display, port, host, idle_seconds=idle, record=recording)
         else:
             server = PipeServer(display, *standard_streams(run), recording)
+
+        def obey() -> None:
+            if lines is not None:
+                lines.obey(display.joystick, server.session.reset)
+
         with server:
             if window or inspected is not None:
                 from ramtek_emu.monitor.window import open_screen
