@@ -73,7 +73,7 @@ class PipeServer(Server):
         if self.served:
             return False
         served, self._copied = socket.socketpair()
-        self._client = Client(served, self.session, self.idle_seconds, math.inf)
+        self._client = Client(served, self.session, self.idle_seconds)
         self._replying = threading.Thread(target=self._copy_replies, daemon=True)
         self._replying.start()
         threading.Thread(target=self._copy_words, daemon=True).start()
