@@ -9,7 +9,6 @@ from __future__ import annotations
 import difflib
 import errno
 import os
-import re
 import select
 import signal
 import sys
@@ -38,8 +37,6 @@ SECONDS_BETWEEN: Final = 0.02
 """Limit: of two looks at whether Ended was dropped."""
 READER_LEFT: Final = 141
 """The exit code in a shell of a program that SIGPIPE ended."""
-WINDOW: Final = "ramtek_emu.monitor.window"
-"""The module that imports pygame."""
 PYGAME: Final = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
 """The package that provides pygame, as in pyproject.toml: pygame has no wheels from Python 3.14 on."""
 
@@ -188,9 +185,9 @@ def run_command(command: click.Command, name: str) -> None:
 
     SIGINT, SIGTERM and SIGHUP raise Ended, once; the exit code is 128 plus the number of the signal. If an
     error has an attribute `exit_code`, the user can act on it: its message is shown, and the attribute is the
-    code. If the reader of stdout leaves, the command ends in silence. An error while the module of the window
-    is loaded means that pygame is missing or broken. All other errors are faults of the program. With
-    `--debug` anywhere before a `--`, the traceback is shown.
+    code. If the reader of stdout leaves, the command ends in silence. If pygame cannot be imported, the
+    message has the package to install. All other errors are faults of the program. With `--debug` anywhere
+    before a `--`, the traceback is shown.
     """
     SIGNALS.install()
     try:
@@ -250,10 +247,9 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
         refused: int | None = getattr(error, "exit_code", None)
         if refused is not None:
             return refused, str(error)
-        if _is_of_the_window(error):
-            reason = str(error) or type(error).__name__
+        if isinstance(error, ImportError) and str(error.name).startswith("pygame"):
             return UNAVAILABLE, (
-                f"a window must have pygame, and it cannot be loaded ({reason}); "
+                f"a window must have pygame, and it cannot be loaded ({error}); "
                 f"install it with `pip install {PYGAME}`, or ask for a picture file instead"
             )
         if isinstance(error, OSError) and error.filename is None:
@@ -280,22 +276,11 @@ def _exit_code(command: click.Command, name: str, arguments: list[str]) -> objec
 
 def _memory_error(error: BaseException | None) -> BaseException | None:
     """The lack of memory that an error reports, or that led to it; None for any other error."""
-    while error is not None:
-        # Errors of pygame and of the loader of libraries have no other sign.
-        may_lack = isinstance(error, (RuntimeError, ImportError)) and not hasattr(error, "exit_code")
-        is_lack = may_lack and re.search("out of memory|cannot allocate memory", str(error), re.IGNORECASE)
-        if isinstance(error, MemoryError) or is_lack or getattr(error, "errno", None) == errno.ENOMEM:
-            return error
+    while error is not None and not isinstance(error, MemoryError):
+        if getattr(error, "errno", None) == errno.ENOMEM:
+            break
         error = error.__context__
-    return None
-
-
-def _is_of_the_window(error: Exception) -> bool:
-    """Whether the error was raised while the module of the window was loaded."""
-    return any(
-        frame.f_code.co_name == "<module>" and frame.f_globals.get("__name__") == WINDOW
-        for frame, _ in traceback.walk_tb(error.__traceback__)
-    )
+    return error
 
 
 def _without_debug(arguments: list[str]) -> tuple[bool, list[str]]:

@@ -55,7 +55,7 @@ class Ramtek9300:
             self.frame_buffer,
             self.lookup_table,
             self.cursors,
-            self.processor.current_parameters,
+            self.processor.parameters,
             self.beam,
         )
 
@@ -74,13 +74,15 @@ class Ramtek9300:
             part.restore(state[name])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        beside = self.resets, self.words_received, self.decoder, self.processor.replies
+        processor = self.processor
+        beside = self.resets, self.words_received, self.decoder, processor.replies, processor.foreign
         return type(self), (self.configuration,), (self.state(), beside)
 
     def __setstate__(self, saved: tuple[Any, ...]) -> None:
         state, beside = saved
         self.restore(state)
-        self.resets, self.words_received, self.decoder, self.processor.replies = beside
+        self.resets, self.words_received, self.decoder, replies, foreign = beside
+        self.processor.replies, self.processor.foreign = replies, foreign
 
     def _parts(self) -> dict[str, Any]:
         """The parts that have a state; the beam paints the monitor image, so it comes first."""
@@ -149,8 +151,9 @@ class Ramtek9300:
         """
         self.resets += 1
         self.decoder.clear()
-        self.processor.clear_replies()
-        self.cursors.hide()
+        self.processor.replies.clear()
+        for cursor in self.cursors.all:
+            cursor.state = 0
         for _ in self._take(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16)):
             pass
 

@@ -91,7 +91,6 @@ def word_png_bytes(words: Words, entries: Colors) -> bytes:
     Assumed: a suggested palette must be sorted by falling frequency. All frequencies are 0 here, so the order
     of the words is allowed.
     """
-    from PIL import Image
     from PIL.PngImagePlugin import PngInfo
 
     rows = np.zeros(len(entries), [("color", "u1", 3), ("alpha", "u1"), ("frequency", ">u2")])
@@ -99,6 +98,13 @@ def word_png_bytes(words: Words, entries: Colors) -> bytes:
     chunks = PngInfo()
     chunks.add(b"sPLT", TABLE.encode("ascii") + b"\0\x08" + rows.tobytes())
     chunks.add_text(TABLE, entries.tobytes().hex(), zip=True)
+    return gray_png_bytes(words, chunks)
+
+
+def gray_png_bytes(words: Words, chunks: PngInfo) -> bytes:
+    """Words, (lines, elements) uint16, as a PNG file of 16-bit grays, with further chunks."""
+    from PIL import Image
+
     return _saved(Image.fromarray(np.ascontiguousarray(words)), chunks)
 
 

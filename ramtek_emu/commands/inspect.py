@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ramtek_emu.commands.displays import (
+    Run,
     configuration_option,
     display_asked_for,
     read_stream,
@@ -128,15 +129,19 @@ def inspect(
     refuse_outside("a line", None if who is None else who[1], sizes.lines - 1)
     refuse_outside("an entry", who_entry, sizes.entries - 1)
     replay = Replay(read_stream(stream, sizes), display)
-    last = len(replay.stream)
+    run, last = Run(), len(replay.stream)
     refuse_outside("an instruction", at, last, stream)
     refuse_outside("an instruction", None if numbers is None else max(numbers), last, stream)
     asks = who is not None or who_entry is not None
     if output is None and snapshot is None and not asks and not as_json:
         from ramtek_emu.inspection.inspector import inspect
 
+        def hint(seconds: float) -> str:
+            # Before the end, the stream may still load the table.
+            return run.hint_at_rest(replay.display, seconds) if replay.number == last else ""
+
         replay.go_to(0 if at is None else at)
-        inspect(replay, f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}")
+        inspect(replay, f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}", hint)
         return
     number = last if at is None else at
     if numbers is not None and output is not None:
@@ -145,6 +150,7 @@ def inspect(
         tell(f"wrote {output}")
     elif output is not None:
         replay.go_to(number)
+        run.hint(replay.display)
         replay.display.save_png(output, overwrite=force)
         tell(f"wrote {output}")
     if snapshot is not None:

@@ -8,6 +8,7 @@ import stat
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -190,7 +191,8 @@ def watch(server: Server, run: Run, obey: Callable[[], object], inspected: Runni
         inspected.session, inspected.step, inspected.obey = server.session, server.step, obey
         inspected.is_connected = lambda: server.busy
         name = server.display.configuration.name.replace("_", " ")
-        inspector.inspect_host(inspected, f"RAMTEK {name}", lambda: run.ends)
+        hint = partial(run.hint_at_rest, server.display)
+        inspector.inspect_host(inspected, f"RAMTEK {name}", hint, lambda: run.ends)
         return
 
     def serve_for(seconds: float) -> None:

@@ -22,10 +22,6 @@ LARGEST_CELL: Final = 16
 Assumed: a programmed character has 12 lines of 8 dots (LIN), so that four bits hold a dimension.
 """
 
-LINES_AT_ONCE: Final = 256
-PIXELS_AT_ONCE: Final = 1 << 20
-"""Limits: the lines of text, and their pixels, between two pauses; at most some 10 ms."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class TextStyle:
@@ -69,12 +65,6 @@ class TextStyle:
 def beside(cells: Dots, step: int) -> Dots:
     """Cells, (n, outer, inner), side by side at a distance of `step` pixels."""
     count, across, along = cells.shape
-    if count == 1:
-        single: Dots = cells[0]
-        return single
-    if step == along:
-        close: Dots = cells.transpose(1, 0, 2).reshape(across, count * along)
-        return close
     spaced = np.zeros((across, count, step), np.bool_)
     spaced[:, :, :along] = cells.transpose(1, 0, 2)
     side_by_side: Dots = spaced.reshape(across, count * step)
@@ -94,7 +84,7 @@ def write_text(
 ) -> Generator[None, None, Point]:
     """Write characters along the scan of the window from `start` on; returns the point of the next cell.
 
-    The generator yields None at pauses, after at least PIXELS_AT_ONCE pixels or LINES_AT_ONCE lines of text.
+    The generator yields None between two lines of text.
 
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
     (the dots between are background); JPL (its driver sets a window from 1, 1 on and starts text anywhere,
@@ -123,23 +113,20 @@ def write_text(
     low, low_line = order.steps(window, order.corner(memory))
     room, room_across = order.inner_and_outer(memory)
     words = np.array((style.background, style.foreground), np.uint16)
-    lines_drawn = pixels = 0
     seen_lines = reaching(outer, across, line_step, low_line, room_across)
     for line in range(seen_lines.start, min(seen_lines.stop, last + 1)):
         end = first_cells + line * line_cells
         first, cells = (inner, numbers[:end]) if line == 0 else (0, numbers[end - line_cells : end])
         seen = reaching(first, along, step, low, room)
         cells = cells[seen.start : seen.stop]
+        if line > seen_lines.start:
+            yield
         if len(cells):
             dots = style.dots(shapes[cells])
             whole = beside(np.ones((len(cells), across, along), np.bool_), step) if step != along else None
             written = dots if style.transparent else whole
             place = order.stepped(corner, first + seen.start * step, outer + line * line_step)
             frame_buffer.write_block(place, order, words.take(dots.view(np.uint8)), enable, written)
-            lines_drawn, pixels = lines_drawn + 1, pixels + dots.size
-            if lines_drawn >= LINES_AT_ONCE or pixels >= PIXELS_AT_ONCE:
-                lines_drawn = pixels = 0
-                yield
     if not last:
         return order.stepped(corner, inner + len(numbers) * step, outer)
     return order.stepped(corner, (more - (last - 1) * line_cells) * step, outer + last * line_step)

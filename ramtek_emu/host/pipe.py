@@ -1,7 +1,7 @@
 """A display on two pipes: a pipe for the words of the host, and a pipe for the replies.
 
 `PipeServer` serves the host as other servers do. `paced` reads a recorded stream at the pace of a host that
-loads the table at a given rate. `StreamFields` are the fields of a recorded stream, for a film.
+loads the table at a given rate. `stream_fields` are the fields of a recorded stream, for a film.
 
 The session ends with the input; an unfinished instruction and an odd last byte are dropped.
 """
@@ -164,41 +164,21 @@ def paced(read: Read, loads_per_second: int, configuration: Configuration) -> Re
     return lambda _: next(left, b"")
 
 
-class StreamFields:
-    """The fields of a stream after each cut and at its end. The stream is executed when fields are taken.
+def stream_fields(
+    session: HostSession, read: CutReader, ends: Callable[[], bool] = lambda: False
+) -> Iterator[Colors]:
+    """The fields of a stream after each cut, (lines, elements, 3) uint8, and at its end, if it changed.
 
-    If the field at the end equals the field before, it is left out. There are at most `most` fields: the
-    fields after the first cuts, and the field at the end. When `ends()` is true, the rest of the words is not
+    The stream is executed when fields are taken. When `ends()` is true, the rest of the words is not
     executed. Replies are dropped.
     """
-
-    def __init__(
-        self, session: HostSession, read: CutReader, most: int, ends: Callable[[], bool] = lambda: False
-    ) -> None:
-        self.count = 0
-        """The number of fields until now."""
-        self.left_out = False
-        """Whether fields before the last field are left out, because of `most`."""
-        self._session = session
-        self._read = read
-        self._most = most
-        self._ends = ends
-
-    def __iter__(self) -> Iterator[Colors]:
-        """Execute the rest of the stream, and yield its fields, (lines, elements, 3) uint8."""
-        display = self._session.display
-        last: Colors | None = None
-        is_skipped = False
-        for data, is_cut in self._read:
-            if any(self._ends() for _ in self._session.feed(data)):
-                break
-            self.left_out |= is_skipped
-            is_skipped = is_cut and self.count == self._most - 1
-            if is_cut and not is_skipped:
-                last = display.field()
-                self.count += 1
-                yield last
-        field = display.field()
-        if last is None or not np.array_equal(field, last):
-            self.count += 1
-            yield field
+    last: Colors | None = None
+    for data, is_cut in read:
+        if any(ends() for _ in session.feed(data)):
+            break
+        if is_cut:
+            last = session.display.field()
+            yield last
+    field = session.display.field()
+    if last is None or not np.array_equal(field, last):
+        yield field

@@ -7,6 +7,7 @@ mouse over its field is its joystick.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -30,17 +31,21 @@ from ramtek_emu.writing import PNG, write_numbered
 WHEEL_ROWS: Final = 3
 
 
-def inspect(replay: Replay, caption: str = "RAMTEK 9300") -> None:
+Hint = Callable[[float], str]
+"""A function that returns a message for people at a time of `time.monotonic`, or ""."""
+
+
+def inspect(replay: Replay, caption: str = "RAMTEK 9300", hint: Hint = lambda _: "") -> None:
     """Open a window in which the instructions of a replay are inspected, until it is closed.
 
     NoScreenError if there is no screen.
     """
-    Inspector(inspection_of(replay), caption).run()
+    Inspector(inspection_of(replay), caption).run(hint)
 
 
-def inspect_host(host: RunningHost, caption: str, ends: Callable[[], bool]) -> None:
+def inspect_host(host: RunningHost, caption: str, hint: Hint, ends: Callable[[], bool]) -> None:
     """Follow a running display in a window, until it is closed or `ends()` is true; NoScreenError."""
-    Inspector(inspection_of(host.replay, host), caption).run(ends)
+    Inspector(inspection_of(host.replay, host), caption).run(hint, ends)
 
 
 class Inspector:
@@ -77,13 +82,15 @@ class Inspector:
         """Show the inspection after an action."""
         self.page.session = action(self.page.session, *values)
 
-    def run(self, ends: Callable[[], bool] = lambda: False) -> None:
-        """Keep the window open until it is closed, or until `ends()` is true."""
+    def run(self, hint: Hint = lambda _: "", ends: Callable[[], bool] = lambda: False) -> None:
+        """Keep the window open until it is closed, or until `ends()` is true; show the hints."""
         monitor = self.monitor
         monitor.open()
         try:
             while monitor.is_open and not ends():
                 monitor.step(0 if sessions.is_busy(self.session) else TICK_MILLISECONDS)
+                if message := hint(time.monotonic()):
+                    self._do(sessions.tell, message)
         finally:
             monitor.close()
 

@@ -12,12 +12,12 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Numbers
-from ramtek_emu.drawing import curves, text, vectors
+from ramtek_emu.drawing import curves, plots, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register, signed
-from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
@@ -46,9 +46,11 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> Paus
     vertices = processor.placed(processor.points(instruction), instruction.low_byte)
     if not len(vertices):
         return None
-    linked = np.concatenate(([parameters.start], vertices))
+    starts = np.concatenate(([parameters.start], vertices[:-1]))
     style = ink(processor, instruction)
-    slices = vectors.write_linked(processor.frame_buffer, linked, style, parameters.enable)
+    slices = vectors.write_lines(
+        processor.frame_buffer, starts, vertices, style, parameters.enable, linked=True
+    )
     return follow(parameters, vertices, slices)
 
 
@@ -107,43 +109,41 @@ def write_conic(processor: Processor, instruction: Instruction) -> Pauses:
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
-MARKS_AT_ONCE: Final = 256
-PIXELS_AT_ONCE: Final = 1 << 20
-"""Limits: the marks, and the pixels of marks, between two pauses; some 2 ms each."""
-
-
-def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
+def write_plot(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Draw a bar for each number of the data, from the base line to the number.
 
     Hardware: LIN libdoc (a starting point, a scanning mode, the dimension and the spacing in the direction of
     scanning, a base line); LIN fplot.c (data are lines of the screen; DIM 1 and SPACE 1 put n numbers on n
     elements, so that spacing is the distance of two bars and dimension the width of a bar).
     Assumed: the opcode, by NCAR's name and by its place among the opcodes of the 9300; that all operands come
-    by flag words as in other instructions; that a mark is a bar in the foreground and includes both ends. The
-    second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters. The scan order gives the
-    direction of the steps; data and base line are the coordinates across it, absolute in each addressing
-    mode, with a sign. Only the memory and the write window clip. The operating point is then where the next
-    bar begins, at the last number, as fplot.c starts at the first number.
+    by flag words as in other instructions; that a plot has bars in the foreground, which include the base
+    line and the number. The second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters.
+    The scan order gives the direction of the steps; data and base line are the coordinates across it,
+    absolute in each addressing mode, with a sign. Only the memory and the write window clip. The operating
+    point is then where the next bar begins, at the last number, as fplot.c starts at the first number.
     """
-    parameters = processor.parameters
-    order, width, step = parameters.order, max(1, parameters.dimensions[0]), parameters.spacing[0]
-    base = signed(parameters.base_line)
+    parameters, order = processor.parameters, processor.parameters.order
+    values = processor.points(instruction, 1)[:, 0]
+    if not len(values):
+        return None
+    width = max(1, parameters.dimensions[0])
+    backward = order.upward if order.vertical else order.leftward
+    step = -parameters.spacing[0] if backward else parameters.spacing[0]
+    first = parameters.start.line if order.vertical else parameters.start.element
+    places = (first + step * np.arange(len(values) + 1)).astype(np.int16).astype(np.int64)
+    place, value = int(places[-1]), int(values[-1])
+    parameters.start = Point(value, place) if order.vertical else Point(place, value)
     word, _ = processor.colors(instruction)
-    pixels = 0
-    for number, value in enumerate(processor.points(instruction, 1)[:, 0].tolist(), 1):
-        first = parameters.start
-        last = order.stepped(first, width - 1, 0)
-        (left, right), (top, bottom) = map(sorted, zip(first, last, strict=True))
-        low, high = sorted((base, value))
-        box = Window(low, top, high, bottom) if order.vertical else Window(left, low, right, high)
-        before = processor.frame_buffer.written
-        processor.frame_buffer.fill(box, word, parameters.enable)
-        pixels += processor.frame_buffer.written - before
-        element, line = order.stepped(first, step, 0)
-        parameters.start = register(Point(value, line) if order.vertical else Point(element, value))
-        if number % MARKS_AT_ONCE == 0 or pixels >= PIXELS_AT_ONCE:
-            pixels = 0
-            yield
+    return plots.write_bars(
+        processor.frame_buffer,
+        places[:-1] - (width - 1 if backward else 0),
+        values,
+        width=width,
+        base=signed(parameters.base_line),
+        vertical=order.vertical,
+        word=word,
+        enable=parameters.enable,
+    )
 
 
 def write_text(processor: Processor, instruction: Instruction) -> Pauses:

@@ -55,15 +55,16 @@ class Processor:
         configuration: Configuration,
         frame_buffer: FrameBuffer,
         lookup_table: LookupTable,
-        cursors: Cursors | None = None,
-        beam: Beam | None = None,
+        cursors: Cursors,
+        beam: Beam | None,
     ) -> None:
         self.configuration = configuration
         self.frame_buffer = frame_buffer
         self.lookup_table = lookup_table
-        self.cursors = Cursors(configuration.cursors) if cursors is None else cursors
+        self.cursors = cursors
         self.beam = beam
         self.parameters = Parameters.at_reset(configuration)
+        """The current parameters; always the same object."""
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
         self.loaded_characters = initial_loaded_characters()
@@ -71,26 +72,20 @@ class Processor:
         self.illegal_words = 0
         """The number of illegal words that were skipped; it never decreases."""
         self.foreign: str | None = None
-        """The first instruction of the host that this display lacks and the 9460 has, such as "FILL".
-
-        "operand flags 2" stands for the second operand flag word in another instruction.
-        """
+        """What the host sent first that this 9300 lacks and the 9460 has, such as "FILL"; None if nothing."""
         self.unimplemented = 0
         """The number of instructions without effect, known by name only; it never decreases."""
-        self._illegal = False
+        self.is_illegal = False
+        """Whether the status has an illegal instruction."""
         self.replies = bytearray()
         """The bytes of the replies that the host has not read."""
-
-    def __repr__(self) -> str:
-        state = f"{self.waiting} words of replies waiting, status {self.status.name}"
-        return f"Processor({self.configuration.name}, {state})"
 
     def state(self) -> dict[str, Any]:
         """All but the current parameters and the replies."""
         return {
             "saved": [parameters.state() for parameters in self.saved],
             "loaded_characters": self.loaded_characters.copy(),
-            "illegal": self._illegal,
+            "illegal": self.is_illegal,
             "illegal_words": self.illegal_words,
             "without_effect": self.unimplemented,
         }
@@ -99,33 +94,21 @@ class Processor:
         """Set the values of a state, and drop the replies."""
         self.saved[:] = [Parameters(**values) for values in state["saved"]]
         self.loaded_characters[...] = state["loaded_characters"]
-        self._illegal = state["illegal"]
+        self.is_illegal = state["illegal"]
         self.illegal_words, self.unimplemented = state["illegal_words"], state["without_effect"]
-        self.clear_replies()
-
-    def current_parameters(self) -> Parameters:
-        """The parameters. POPE and RSET replace the object, so ask for it each time."""
-        return self.parameters
+        self.replies.clear()
 
     @property
     def status(self) -> Status:
         """The bits of the interface's status register."""
         status = Status.READY
-        if self._illegal:
+        if self.is_illegal:
             status |= Status.ILLEGAL
         return status | Status.CURSOR if self.cursors.enter_is_pressed else status
 
-    def flag_illegal(self) -> None:
-        """Set the illegal-instruction bit."""
-        self._illegal = True
-
     def clear_status(self) -> None:
         """Clear the request bits of the status register."""
-        self._illegal = self.cursors.enter_is_pressed = False
-
-    def clear_replies(self) -> None:
-        """Drop the replies that the host has not read."""
-        self.replies.clear()
+        self.is_illegal = self.cursors.enter_is_pressed = False
 
     @property
     def waiting(self) -> int:

@@ -102,8 +102,8 @@ def test_a_library_gives_programs_their_device_with_the_writes_and_reads_of_the_
                 command, env=variables, stdout=subprocess.PIPE, text=True, check=True, timeout=60
             ).stdout
             for command in (
-                [tmp_path / "program"],
-                [tmp_path / "fortified", "/dev/ramtek"],
+                [str(tmp_path / "program")],
+                [str(tmp_path / "fortified"), "/dev/ramtek"],
                 [sys.executable, "-c", PYTHON],
             )
         ]

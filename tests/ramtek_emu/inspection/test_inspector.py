@@ -237,3 +237,6 @@ def test_the_window_shows_the_page_after_keys_and_clicks(on_screen: str) -> None
     pygame.event.post(event)
     opened.run()
     assert not monitor.is_open
+    # A hint for the user is a message on the page.
+    opened.run(lambda _: "nothing is lit", lambda: bool(opened.session.message))
+    assert opened.session.message == "nothing is lit"

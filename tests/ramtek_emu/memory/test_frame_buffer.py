@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from hypothesis import strategies as st
 
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
@@ -24,12 +23,3 @@ def test_written_counts_the_words_that_reached_the_memory() -> None:
     dots = np.array([[True, False, True]])
     buffer.write_block(Point(0, 0), SCAN_ORDERS[0], np.ones((1, 3), np.uint16), WriteEnable(1), dots)
     assert [*counts, buffer.written] == [2, 2, 4, 5, 7]
-
-
-def test_the_words_of_a_display_are_read_only_and_stay_current() -> None:
-    buffer = FrameBuffer(SMALL)
-    words = buffer.words
-    buffer.fill(buffer.window, 3)
-    assert (words == 3).all()
-    with pytest.raises(ValueError, match="read-only"):
-        words[0, 0] = 1
