@@ -41,27 +41,9 @@ PYGAME: Final = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
 """The package that provides pygame, as in pyproject.toml: pygame has no wheels from Python 3.14 on."""
 
 
-def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
-    if not asked or context.resilient_parsing:
-        return
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        click.echo(version("autocolor"))
-    except PackageNotFoundError:
-        click.echo("not installed: a checkout, run in its folder")
-    context.exit()
-
-
-version_option = click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_show_version,
-    help="Show the version and leave.",
+version_option = click.version_option(
+    package_name="autocolor", message="%(version)s", help="Show the version and leave."
 )
-"""`--version`; it also works in a checkout that was never installed."""
 
 
 class CommandGroup(click.Group):

@@ -130,8 +130,6 @@ def waiting_bytes(file: socket.socket | int) -> int:
 
 MOST_SECONDS: Final = 1_000_000
 """The longest timeout. Limit: the system cannot wait for much longer at once."""
-HURRIED_SECONDS: Final = 0.25
-"""The longest wait for the display when an error or a signal closes the port. Limit: a hang would hide it."""
 
 Self = TypeVar("Self", bound="SocketPort")
 
@@ -189,7 +187,24 @@ class SocketPort:
         Unread replies are dropped. PortError if the display turned this host away, was lost, or does not
         execute all words within `timeout` seconds.
         """
-        self._close(self.timeout)
+        if self._is_closed:
+            return
+        deadline = time.monotonic() + self.timeout
+        with self.socket:
+            self._exchange(time.monotonic())
+            try:
+                self.socket.shutdown(socket.SHUT_WR)
+                while (left := deadline - time.monotonic()) > 0 and ready(
+                    self.socket, selectors.EVENT_READ, left
+                ):
+                    if read_socket(self.socket, self.at_once) == b"":
+                        return
+            except OSError as cause:
+                raise self._gone(cause) from cause
+        raise PortError(
+            f"a display must execute all words within {self.timeout:g} seconds, and "
+            f"{self.address} has not: it may be serving another host first; give a longer timeout"
+        )
 
     def __enter__(self: Self) -> Self:
         return self
@@ -201,29 +216,7 @@ class SocketPort:
             self.close()
         else:
             # The error that is being raised says more than an error of closing.
-            with suppress(PortError):
-                self._close(min(self.timeout, HURRIED_SECONDS))
-
-    def _close(self, seconds: float) -> None:
-        """End our side, and read until the display ends; PortError if it ended first, or does not end."""
-        if self._is_closed:
-            return
-        deadline = time.monotonic() + seconds
-        with self.socket:
-            self._exchange(time.monotonic())
-            try:
-                self.socket.shutdown(socket.SHUT_WR)
-                while (left := deadline - time.monotonic()) > 0:
-                    if not ready(self.socket, selectors.EVENT_READ, left):
-                        break
-                    if read_socket(self.socket, self.at_once) == b"":
-                        return
-            except OSError as cause:
-                raise self._gone(cause) from cause
-        raise PortError(
-            f"a display must execute all words within {seconds:g} seconds, and "
-            f"{self.address} has not: it may be serving another host first; give a longer timeout"
-        )
+            self.socket.close()
 
     def _send(self, data: bytes) -> None:
         left, deadline = memoryview(data), time.monotonic() + self.timeout
