@@ -85,7 +85,7 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
 
 def test_a_second_host_waits_until_the_first_has_left() -> None:
     with serving() as server, TcpPort(server.address) as first:
-        first.send(instructions.no_operation())
+        first.send(words("0700"))
         until(lambda: server.busy)
         with TcpPort(server.address) as second:
             second.send(words("0902 0044 7 5 0 5 0 0B03 0040 4 0 5 0 4"))
