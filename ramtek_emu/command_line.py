@@ -9,7 +9,6 @@ from __future__ import annotations
 import difflib
 import errno
 import os
-import re
 import select
 import signal
 import sys
@@ -34,8 +33,6 @@ ENDING: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
 """The signals that end a program from outside. Windows has no SIGHUP."""
-LONG_WORD: Final = re.compile(r"(\S{38})\S{5,}(\S{38})")
-"""A word of more than 80 letters in a message of click: its beginning and its end."""
 SECONDS_BETWEEN: Final = 0.02
 """Limit: of two looks at whether Ended was dropped."""
 READER_LEFT: Final = 141
@@ -44,27 +41,9 @@ PYGAME: Final = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
 """The package that provides pygame, as in pyproject.toml: pygame has no wheels from Python 3.14 on."""
 
 
-def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
-    if not asked or context.resilient_parsing:
-        return
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        click.echo(version("autocolor"))
-    except PackageNotFoundError:
-        click.echo("not installed: a checkout, run in its folder")
-    context.exit()
-
-
-version_option = click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_show_version,
-    help="Show the version and leave.",
+version_option = click.version_option(
+    package_name="autocolor", message="%(version)s", help="Show the version and leave."
 )
-"""`--version`; it also works in a checkout that was never installed."""
 
 
 class CommandGroup(click.Group):
@@ -94,17 +73,9 @@ class CommandGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the arguments name; the error for an unknown name suggests the nearest command.
-
-        If the name is a file, the error shows where the command belongs.
-        """
+        """The command that the arguments name; the error for an unknown name suggests the nearest command."""
         if args and args[0] not in self.table and not args[0].startswith("-"):
             near = difflib.get_close_matches(args[0], self.table, n=1)
-            if not near and os.path.lexists(args[0]):
-                ctx.fail(
-                    f"a command must stand before a file, as in `{ctx.info_name} {next(iter(self.table))}"
-                    f" {args[0]}`; known are {', '.join(self.table)}"
-                )
             advice = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(self.table)}"
             ctx.fail(f"there is no command {args[0]!r}; {advice}")
         return super().resolve_command(ctx, args)
@@ -234,7 +205,7 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
     except click.exceptions.Abort:
         raise KeyboardInterrupt from None
     except click.ClickException as refusal:
-        refusal.message = escaped(LONG_WORD.sub(r"\1...\2", refusal.message))  # type: ignore[misc]
+        refusal.message = escaped(refusal.message)  # type: ignore[misc]
         with suppress(OSError, ValueError):
             refusal.show()
         return refusal.exit_code, ""

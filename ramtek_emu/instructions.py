@@ -55,11 +55,6 @@ def initialize() -> Words:
     return encode(Instruction(FORMAT_OF_NAME["INIT"]))
 
 
-def no_operation() -> Words:
-    """NOP: do nothing."""
-    return encode(Instruction(FORMAT_OF_NAME["NOP"]))
-
-
 def set_parameters(**operands: OperandValue | None) -> Words:
     """SET: set operands by name (`foreground=3`, `window=(0, 0, 639, 479)`); they stay until set again."""
     return encode(normal("SET", operands))

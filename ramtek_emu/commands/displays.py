@@ -31,7 +31,10 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
     """The names of configurations, for completion in a shell, in upper or lower case."""
-    return [name for name in CONFIGURATIONS if name.startswith(incomplete.upper())]
+    names = [name.lower().replace("_", "-") for name in CONFIGURATIONS]
+    # The longer names begin with the shorter: offer them when a name is complete.
+    names += [f"{name}-monochrome" for name in names if incomplete.lower().replace("_", "-").startswith(name)]
+    return [name for name in names if name.startswith(incomplete.lower().replace("_", "-"))]
 
 
 configuration_option: Final = click.option(

@@ -100,7 +100,6 @@ def play(
 
     from ramtek_emu.host import pipe
     from ramtek_emu.host.port import waiting_bytes
-    from ramtek_emu.host.server import READ_BYTES, HostSession
 
     number = file.fileno()
     with file, running(display, output, snapshot, record, force) as run:
@@ -126,11 +125,11 @@ def play(
             with pipe.PipeServer(display, paced, record=run.record) as server:
                 show(display, run, server.serve_for)
             return
-        session = HostSession(display, run.record)
+        server = pipe.PipeServer(display, read, record=run.record)
+        session = server.session
         waiting = 0
         if film is None:
-            while (data := read(READ_BYTES)) and not any(run.ends for _ in session.feed(data)):
-                pass
+            server.serve(lambda: run.ends)
         else:
             is_cut = pipe.is_load if every is None else pipe.every(every)
             cut = pipe.CutReader(read, display.configuration, is_cut)

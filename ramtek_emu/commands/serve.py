@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import select
+import stat
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -50,6 +52,10 @@ WITHOUT_EFFECT: Final = (
 )
 """Options that have no effect beside the second option."""
 STEP_SECONDS: Final = 0.1
+WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
+"""The most bytes that any pipe takes without waiting, if it can be written."""
+MOST_WRITTEN: Final = 1 << 16
+"""The most bytes that are written at once to a pipe that never waits."""
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while no words arrive."""
 
@@ -115,6 +121,7 @@ def serve(
     refuse_outputs(force, record, pictures=[output, snapshot])
     display = display_asked_for(configuration, start, table)
 
+    from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.pipe import PipeServer
     from ramtek_emu.host.port import waiting_bytes
     from ramtek_emu.host.server import TcpServer, UnixServer
@@ -125,6 +132,7 @@ def serve(
             from ramtek_emu.inspection.running_host import RunningHost
 
             inspected = RunningHost(display, run.record)
+        lines = None if joystick is None else JoystickLines(joystick, tell)
         recording = run.record if inspected is None else inspected.record
         server: TcpServer | UnixServer | PipeServer
         if unix is not None:
@@ -133,12 +141,12 @@ def serve(
             server = TcpServer(display, port, host, idle_seconds=idle, record=recording)
         else:
             server = PipeServer(display, *standard_streams(run), recording)
-        with server:
-            obey: Callable[[], object] = lambda: None  # noqa: E731
-            if joystick is not None:
-                from ramtek_emu.host.joystick import JoystickLines
 
-                obey = JoystickLines(joystick, display.joystick, server.session.reset, tell).obey
+        def obey() -> None:
+            if lines is not None:
+                lines.obey(display.joystick, server.session.reset)
+
+        with server:
             if window or inspected is not None:
                 from ramtek_emu.monitor.window import open_screen
 
@@ -148,6 +156,8 @@ def serve(
                 announce(server.address, host)
             if window or inspected is not None:
                 watch(server, run, obey, inspected)
+            elif isinstance(server, PipeServer) and joystick is None:
+                server.serve(lambda: run.ends)
             else:
                 while not run.ends and not ((once or stdio) and server.served):
                     obey()
@@ -197,7 +207,7 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
 
     After this call, nothing else can write to stdout.
     """
-    stdin, stdout = -1 if sys.stdin is None else sys.stdin.fileno(), sys.stdout.fileno()
+    stdin = -1 if sys.stdin is None else sys.stdin.fileno()
 
     def read(most: int) -> bytes:
         # A terminal or a socket raises an error if its other end was closed.
@@ -205,16 +215,26 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
             return os.read(stdin, most) if run.wait(stdin) else b""
         return b""
 
-    replies = os.dup(stdout)
+    replies, at_once = replies_to(sys.stdout.fileno())
     # Redirect all printed text to stderr, so that it does not mix with the words.
-    os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, stdout)
+    os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
 
     def write(data: bytes) -> None:
         view = memoryview(data)
-        while view:
-            view = view[os.write(replies, view) :]
+        while view and run.wait(replies, to_write=True):
+            with suppress(BlockingIOError):
+                view = view[os.write(replies, view[:at_once]) :]
 
     return read, write
+
+
+def replies_to(stdout: int) -> tuple[int, int]:
+    """A descriptor for replies, and how many bytes it takes without waiting once it can be written."""
+    with suppress(OSError):
+        if sys.platform == "linux" and stat.S_ISFIFO(os.fstat(stdout).st_mode):
+            # A pipe that is opened anew can be set not to wait, and waits as before for other programs.
+            return os.open(f"/proc/self/fd/{stdout}", os.O_WRONLY | os.O_NONBLOCK), MOST_WRITTEN
+    return os.dup(stdout), WRITTEN_AT_ONCE
 
 
 def announce(address: str, host: str) -> None:

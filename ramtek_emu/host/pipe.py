@@ -28,30 +28,35 @@ from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 Read = Callable[[int], bytes]
 """A function that waits for bytes, and returns at most so many; none at the end."""
 Write = Callable[[bytes], object]
+"""A function that writes all of the bytes; ConnectionError if the pipe has no reader."""
+
+
+def dropped(_: bytes) -> None:
+    """Drop replies."""
 
 
 class PipeServer(Server):
     """A display that serves a single host, which is connected by two pipes.
 
-    Reading and writing a pipe may wait. So two threads copy the bytes of the pipes to a socket and from it,
-    and the display serves the other end of the socket. If the host closes its pipe of replies, they are lost.
+    `serve` waits for the host, as a command does. `step` does not, as with other servers: two threads copy
+    the bytes of the pipes to a socket and from it, and the display serves the other end of the socket.
     """
 
     def __init__(
-        self,
-        display: Ramtek9300,
-        read: Read,
-        write: Write = lambda _: None,
-        record: Record | None = None,
+        self, display: Ramtek9300, read: Read, write: Write = dropped, record: Record | None = None
     ) -> None:
-        """Begin to read the words, and to write the replies; without `write` they are dropped."""
         super().__init__(display, None, "", math.inf, record)
-        served, self._copied = socket.socketpair()
-        self._client = Client(served, self.session, math.inf, math.inf)
+        self._read, self._write = read, write
         self._read_bytes = 0
-        self._replying = threading.Thread(target=self._copy_replies, args=(write,), daemon=True)
-        self._replying.start()
-        threading.Thread(target=self._copy_words, args=(read,), daemon=True).start()
+
+    def serve(self, ends: Callable[[], bool]) -> None:
+        """Execute the host's words until it leaves or `ends()` is true, and write the replies at once."""
+        while data := self._read(READ_BYTES):
+            for reply in self.session.feed(data):
+                if ends():
+                    return
+                with suppress(ConnectionError):
+                    self._write(reply)
 
     @property
     def unexecuted(self) -> int:
@@ -64,21 +69,31 @@ class PipeServer(Server):
         while self._replying.is_alive() and not ends():
             self._replying.join(0.1)
 
+    def _accept(self, seconds: float) -> bool:
+        if self.served:
+            return False
+        served, self._copied = socket.socketpair()
+        self._client = Client(served, self.session, self.idle_seconds)
+        self._replying = threading.Thread(target=self._copy_replies, daemon=True)
+        self._replying.start()
+        threading.Thread(target=self._copy_words, daemon=True).start()
+        return True
+
     def _leave(self) -> None:
         """Leave the unfinished instruction and the odd byte in the session, so that they can be reported."""
 
-    def _copy_words(self, read: Read) -> None:
+    def _copy_words(self) -> None:
         with suppress(OSError):
-            while data := read(READ_BYTES):
+            while data := self._read(READ_BYTES):
                 self._read_bytes += len(data)
                 self._copied.sendall(data)
             self._copied.shutdown(socket.SHUT_WR)
 
-    def _copy_replies(self, write: Write) -> None:
+    def _copy_replies(self) -> None:
         with self._copied, suppress(OSError):
             while data := self._copied.recv(READ_BYTES):
-                with suppress(OSError):
-                    write(data)
+                with suppress(ConnectionError):
+                    self._write(data)
 
 
 class CutReader:

@@ -14,10 +14,9 @@ words are executed first. Then its unfinished instruction and its unread replies
 stay as they are, and the next host is served. Hosts that connect meanwhile wait in line: the system stores
 the connections of 128 hosts with the words they have sent; further hosts try again until there is a place.
 
-Limit: a host is disconnected if nothing is sent or received for `idle_seconds`, or if an instruction stays
-incomplete for `partial_seconds`. The clock of a host starts when its turn comes, so that waiting in line
-costs nothing, and a silent host holds up the line for `idle_seconds` at most. While REPLY_BYTES of replies
-wait for the host, nothing more is read from it.
+Limit: a host is disconnected if nothing is sent or received for `idle_seconds`. The clock of a host starts
+when its turn comes, so that waiting in line costs nothing, and a silent host holds up the line for
+`idle_seconds` at most. While REPLY_BYTES of replies wait for the host, nothing more is read from it.
 """
 
 from __future__ import annotations
@@ -91,11 +90,6 @@ class HostSession:
         count once all words before them are executed.
         """
         return len(self._left) - self.display.decoder.pending_words
-
-    @property
-    def unfinished(self) -> bool:
-        """Whether a word or an instruction is incomplete."""
-        return bool(self.odd_byte) or self.display.decoder.pending_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
         """Pass bytes of the host to the display, and yield the replies, or no bytes, at every pause.
@@ -175,18 +169,16 @@ REPLY_BYTES: Final = 1 << 18
 
 
 class Client:
-    """The host that is served now, with its socket, its waiting replies and its time limits.
+    """The host that is served now, with its socket, its waiting replies and its time limit.
 
     A host that stops reading its replies loses them, but its words are still executed (Assumed: a host that
     draws and leaves wants its picture).
     """
 
-    def __init__(
-        self, connected: socket.socket, session: HostSession, idle_seconds: float, partial_seconds: float
-    ) -> None:
+    def __init__(self, connected: socket.socket, session: HostSession, idle_seconds: float) -> None:
         self.socket = prepared(connected)
         self.session = session
-        self.idle_seconds, self.partial_seconds = idle_seconds, partial_seconds
+        self.idle_seconds = idle_seconds
         self._replies: deque[bytes] = deque()
         self._pending: Iterator[bytes] | None = None
         self.read_bytes = 0
@@ -194,7 +186,7 @@ class Client:
         self._packet_bytes = 0
         """The bytes of the packet that is executed. The packet stays in the socket until then."""
         self._sent_all = False
-        self._last_transfer = self._last_complete = time.monotonic()
+        self._last_transfer = time.monotonic()
 
     @property
     def waiting(self) -> int:
@@ -215,8 +207,7 @@ class Client:
     @property
     def deadline(self) -> float:
         """The time when the host is disconnected, unless something is transferred before."""
-        idle = self._last_transfer + self.idle_seconds
-        return min(idle, self._last_complete + self.partial_seconds) if self.session.unfinished else idle
+        return self._last_transfer + self.idle_seconds
 
     @property
     def unexecuted(self) -> int:
@@ -255,8 +246,6 @@ class Client:
             data = b""
         if data is None:
             return
-        if not self.session.unfinished:
-            self._last_complete = time.monotonic()
         self.read_bytes += len(data)
         self._sent_all = not data
         if has_packets:
@@ -268,28 +257,21 @@ class Client:
 
     def _work(self) -> bool:
         """Execute a piece of the host's words; returns whether there was a piece."""
-        if self.session.allowed == 0:
-            # Stop the clocks of a host that must wait.
-            self._last_transfer = self._last_complete = time.monotonic()
-        if not self.has_work or self._pending is None:
-            return False
-        begin = time.monotonic()
-        reply = next(self._pending, None)
-        # Stop the clocks of the host while the display works.
-        took = time.monotonic() - begin
-        self._last_transfer += took
-        self._last_complete += took
-        if reply:
-            self._replies.append(reply)
-        elif reply is None:
-            self._pending = None
-            if self._packet_bytes:
-                # The packet is executed: take it out of the socket.
-                self.socket.recv(1)
-                self._packet_bytes = 0
-        if not self.session.unfinished:
-            self._last_complete = time.monotonic()
-        return True
+        has_work = self.has_work
+        if has_work and self._pending is not None:
+            reply = next(self._pending, None)
+            if reply:
+                self._replies.append(reply)
+            elif reply is None:
+                self._pending = None
+                if self._packet_bytes:
+                    # The packet is executed: take it out of the socket.
+                    self.socket.recv(1)
+                    self._packet_bytes = 0
+        if has_work or self.session.allowed == 0:
+            # The display was working, or a program stops the host: this was no silence of the host.
+            self._last_transfer = time.monotonic()
+        return has_work
 
     def close(self) -> None:
         """Close the socket, and drop the replies."""
@@ -300,7 +282,6 @@ class Client:
 
 
 IDLE_SECONDS: Final = 600.0
-PARTIAL_SECONDS: Final = 60.0
 HOSTS_IN_LINE: Final = 128
 """Limit: the most hosts that wait in line."""
 
@@ -308,7 +289,7 @@ Self = TypeVar("Self", bound="Server")
 
 
 class Server:
-    """A display that serves the hosts of a listening socket; `address` is the address for a host's port."""
+    """A display that serves one host after the other; `address` is the address for a host's port."""
 
     def __init__(
         self,
@@ -323,7 +304,6 @@ class Server:
         self.session = HostSession(display, record)
         """The session of all hosts, one after the other."""
         self.idle_seconds = idle_seconds
-        self.partial_seconds = PARTIAL_SECONDS
         self.served = 0
         """The number of hosts that were served and have left; it never decreases."""
         self._listener = listener
@@ -373,14 +353,16 @@ class Server:
         self.close()
 
     def _accept(self, seconds: float) -> bool:
+        """Take the next host, waiting up to `seconds` for it; returns whether there is one."""
         if self._listener is None or not ready(self._listener, selectors.EVENT_READ, seconds):
             return False
+        self._listener.setblocking(False)
         try:
             connected, _ = self._listener.accept()
         except OSError:
             # The host has disconnected already.
             return False
-        self._client = Client(connected, self.session, self.idle_seconds, self.partial_seconds)
+        self._client = Client(connected, self.session, self.idle_seconds)
         return True
 
     def _disconnect(self) -> None:

@@ -8,7 +8,6 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from pathlib import Path
 from types import ModuleType
 from typing import ClassVar, NamedTuple
 
@@ -284,18 +283,11 @@ def group(monkeypatch: pytest.MonkeyPatch) -> TwoCommands:
         ("--help", 0, "Commands:\n  paint  paint the house\n  list   list the rooms\n"),
         ("pant", 2, "Error: there is no command 'pant'; did you mean 'paint'?\n"),
         ("xyz", 2, "Error: there is no command 'xyz'; known are paint, list\n"),
-        (
-            "car.obj",
-            2,
-            "Error: a command must stand before a file, as in `house paint car.obj`; known are paint, list\n",
-        ),
     ],
 )
 def test_a_command_is_loaded_by_its_name_from_the_module_of_that_name(
-    argument: str, code: int, shown: str, group: TwoCommands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    argument: str, code: int, shown: str, group: TwoCommands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("car.obj").touch()
     if argument == "--help":
         # Help loads no command.
         monkeypatch.delitem(sys.modules, "tests_of_command_line.paint")

@@ -84,7 +84,7 @@ def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
 
 def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(frames: str) -> None:
     assert play(frames, "--configuration", "PRINCETON_9300", "--snapshot", "a.png").exit_code == 0
-    Path("nop.ramtek").write_bytes(stream(instructions.no_operation()))
+    Path("nop.ramtek").write_bytes(stream([0x0700]))
     options = ("--start", "a.png", "--film", "b.apng", "--fps", 5, "--once")
     assert play("nop.ramtek", *options, "--record", "b.ramtek", "--snapshot", "b.png").exit_code == 0
     assert np.array_equal(decoded("b.apng")[0], read_snapshot("b.png").field())

@@ -71,6 +71,10 @@ REFUSED = (
     ("serve", 2, "Error: a display must be served on one of --port, --unix and --stdio; give one of them"),
     ("serve --stdio --port 1", 2, "Error: a display must be served on one of --port"),
     ("serve --port 0 --unix x", 2, "Error: a display must be served on one of --port"),
+    ("serve --unix x --host 0.0.0.0", 2, "Error: --host must not be with --unix, where it has no effect"),
+    ("serve --stdio --idle 9", 2, "Error: --idle must not be with --stdio"),
+    ("serve --stdio --once", 2, "Error: --once must not be with --stdio"),
+    ("serve --port 0 --once --window", 2, "Error: --once must not be with --window"),
     ("serve --port 70000", 2, "Error: Invalid value for '--port'"),
     ("serve --stdio -o /none/at/all.png", 73, "ramtek: an output must have a folder"),
     ("serve --stdio -o a.jpg", 73, "ramtek: "),
@@ -170,8 +174,15 @@ def test_help_has_examples_and_loads_nothing_heavy() -> None:
     assert shown.stderr.strip() == ""
 
 
-@pytest.mark.parametrize("command", [["play"], ["list"], ["serve"], ["inspect"], ["diff"]])
+@pytest.mark.parametrize("command", [[], ["play"], ["list"], ["serve"], ["inspect"], ["diff"]])
 def test_the_names_of_configurations_are_completed(command: list[str]) -> None:
     shell = BashComplete(ramtek, {}, "ramtek", "_RAMTEK_COMPLETE")
-    found = shell.get_completions([*command, "--configuration"], "p")
-    assert [item.value for item in found] == ["PRINCETON_9300"]
+
+    def names(text: str) -> list[str]:
+        found = shell.get_completions([*command, "--configuration"], text)
+        return [item.value for item in found]
+
+    assert names("p") == ["princeton-9300"]
+    assert names("NCAR_") == ["ncar-9460"]
+    assert names("princeton-9300") == ["princeton-9300", "princeton-9300-monochrome"]
+    assert names("princeton-9300-m") == ["princeton-9300-monochrome"]

@@ -49,13 +49,14 @@ def test_a_listing_is_assembled_into_its_stream() -> None:
     run("assemble", "-", "-o", "-", data=b"NOP\nDRAW\n", code=65)
 
 
-def test_a_listing_in_json_holds_every_word() -> None:
+def test_a_listing_in_json_holds_every_word(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ramtek_emu.commands.list.PIECE", 2)
     data = stream(np.concatenate((OUTLINE, words("A3FF 0A01 0008")))) + b"!"
     listed = run_json("list", "-", data=data)
-    assert stream([word for item in listed for word in item["words"]]) == data[:-1]
+    assert stream(np.concatenate([words(item["words"]) for item in listed])) == data[:-1]
     assert listed[0] == {
         "place": 0,
-        "words": [0x0802, 0x0002, 0x0100],
+        "words": "0802 0002 0100",
         "name": "SET",
         "meaning": "set parameters",
         "flags": [],

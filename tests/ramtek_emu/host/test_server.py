@@ -85,7 +85,7 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
 
 def test_a_second_host_waits_until_the_first_has_left() -> None:
     with serving() as server, TcpPort(server.address) as first:
-        first.send(instructions.no_operation())
+        first.send(words("0700"))
         until(lambda: server.busy)
         with TcpPort(server.address) as second:
             second.send(words("0902 0044 7 5 0 5 0 0B03 0040 4 0 5 0 4"))
@@ -180,9 +180,9 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
     assert (session.display.words == twin.words).all()
     assert session.display.decoder.pending_words == twin.decoder.pending_words
     assert session.odd_byte == odd_byte
-    assert session.unfinished == bool(odd_byte or twin.decoder.pending_words)
     session.leave()
-    assert not session.unfinished
+    assert not session.odd_byte
+    assert session.display.decoder.pending_words == 0
     assert session.display.processor.waiting == 0
 
 
@@ -301,11 +301,9 @@ def test_a_session_lets_so_many_instructions_through(words: list[int], counts: l
 
 
 @contextmanager
-def host_and_client(
-    record: Callable[[bytes], object] | None = None, idle_seconds: float = 10, partial_seconds: float = 10
-) -> Iterator[tuple[socket.socket, Client]]:
+def host_and_client() -> Iterator[tuple[socket.socket, Client]]:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    client = Client(there, HostSession(Ramtek9300(), record), idle_seconds, partial_seconds)
+    client = Client(there, HostSession(Ramtek9300()), 10)
     with host:
         yield host, client
     client.close()
@@ -338,23 +336,6 @@ def test_the_words_that_arrived_and_were_not_executed_are_counted() -> None:
     # The packet that was not read has two words. The last two words of the other begin an instruction.
     assert counts == [12, 5, 4, 2]
     assert client.session.unexecuted == 0
-
-
-def test_only_an_unfinished_instruction_has_the_shorter_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = 1000.0
-    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
-    with host_and_client(idle_seconds=600, partial_seconds=60) as (host, client):
-        for seconds, sent, limit in (
-            (500.0, "0700", 600),
-            (100.0, "0A01", 60),
-            (50.0, "4", 10),
-            (5.0, "1", 5),
-            (0.0, "2", 600),
-        ):
-            now += seconds
-            host.send(packet(sent))
-            serve_all(client)
-            assert client.deadline == now + limit
 
 
 @pytest.mark.usefixtures("one_instruction_a_piece")
