@@ -21,13 +21,6 @@ from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
-def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
-    """The words and the texture of the instruction's lines."""
-    foreground, background = processor.colors(instruction)
-    transparent = bool(instruction.low_byte & Flags.ADDITIVE)
-    return vectors.Ink(foreground, background, processor.parameters.texture, transparent)
-
-
 def follow(parameters: Parameters, points: Numbers, slices: Iterator[int]) -> Pauses:
     """Pause after each slice, with the operating point at the last of the (n, 2) points that are drawn."""
     for drawn in slices:
@@ -42,28 +35,28 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> Paus
     Hardware: LIN, BTL, JPL (from the operating point through every vertex; it ends at the last); BTL (a
     vector to the operating point is a point); NCAR (texture, write window).
     """
-    parameters = processor.parameters
-    vertices = processor.placed(processor.points(instruction), instruction.low_byte)
-    if not len(vertices):
-        return None
-    starts = np.concatenate(([parameters.start], vertices[:-1]))
-    style = ink(processor, instruction)
-    slices = vectors.write_lines(
-        processor.frame_buffer, starts, vertices, style, parameters.enable, linked=True
-    )
-    return follow(parameters, vertices, slices)
+    ends = processor.placed(processor.points(instruction), instruction.low_byte)
+    starts = np.concatenate(([processor.parameters.start], ends[:-1]))
+    return write_lines(processor, instruction, starts, ends, linked=True)
 
 
 def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Assumed: four numbers for each vector, start and end; the operating point moves to the last end."""
-    parameters = processor.parameters
     points = processor.points(instruction, 4).reshape(-1, 2)
-    if not len(points):
-        return None
     points = processor.placed(points, instruction.low_byte)
-    starts, ends = points[0::2], points[1::2]
-    style = ink(processor, instruction)
-    slices = vectors.write_lines(processor.frame_buffer, starts, ends, style, parameters.enable)
+    return write_lines(processor, instruction, points[0::2], points[1::2], linked=False)
+
+
+def write_lines(
+    processor: Processor, instruction: Instruction, starts: Numbers, ends: Numbers, linked: bool
+) -> Pauses | None:
+    """Draw lines with the instruction's words and texture."""
+    if not len(ends):
+        return None
+    parameters = processor.parameters
+    transparent = bool(instruction.low_byte & Flags.ADDITIVE)
+    ink = vectors.Ink(*processor.colors(instruction), parameters.texture, transparent)
+    slices = vectors.write_lines(processor.frame_buffer, starts, ends, ink, parameters.enable, linked)
     return follow(parameters, ends, slices)
 
 
@@ -175,21 +168,12 @@ def write_text(processor: Processor, instruction: Instruction) -> Pauses:
 def load_character(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (twelve rows, a byte each, the first in the high byte).
 
-    Assumed: the highest bit is the leftmost dot, as in rasters; the character of that code is replaced until
-    the display is switched off, since RSET keeps the lookup table too.
+    Assumed: in LPFRP the first row is in the low byte, from its name. The highest bit is the leftmost dot, as
+    in rasters. The character of that code is replaced until the display is switched off, since RSET keeps the
+    lookup table too.
     """
-    load_rows(processor, instruction, ">u2")
-
-
-def load_reversed_character(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: as LPF with the low byte first, from its name."""
-    load_rows(processor, instruction, "<u2")
-
-
-def load_rows(processor: Processor, instruction: Instruction, packing: str) -> None:
-    """Replace the character whose code is in the low byte; `packing` is the byte order of its rows."""
     words = [word for (word,) in instruction.operands.values()]
-    rows = np.array(words, packing).view(np.uint8)
+    rows = np.array(words, "<u2" if instruction.format.name == "LPFRP" else ">u2").view(np.uint8)
     shape = np.unpackbits(rows[:, np.newaxis], axis=1).astype(np.bool_)
     processor.loaded_characters[instruction.low_byte] = shape
 
@@ -208,6 +192,6 @@ EXECUTORS: Final[Executors] = {
     "WPB": write_plot,
     "WT": write_text,
     "LPF": load_character,
-    "LPFRP": load_reversed_character,
+    "LPFRP": load_character,
     "ATTPF": attach_font,
 }

@@ -20,18 +20,17 @@ from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
 def erase(processor: Processor, instruction: Instruction) -> Pauses | None:
-    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag)."""
-    parameters = processor.parameters
-    _, background = processor.colors(instruction)
-    return areas.fill_window(processor.frame_buffer, parameters.window, background, parameters.enable)
+    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag).
 
-
-def erase_everything(processor: Processor, instruction: Instruction) -> Pauses | None:
-    """Assumed: as ERS, but it fills the whole memory and ignores the windows: the B stands for bulk."""
+    Assumed: BERS fills the whole memory and ignores the windows: the B stands for bulk.
+    """
     parameters = processor.parameters
+    window, enable = parameters.window, parameters.enable
+    if instruction.format.name == "BERS":
+        window = parameters.whole_window
+        enable = enable._replace(window=window)
     _, background = processor.colors(instruction)
-    enable = parameters.enable._replace(window=parameters.whole_window)
-    return areas.fill_window(processor.frame_buffer, enable.window, background, enable)
+    return areas.fill_window(processor.frame_buffer, window, background, enable)
 
 
 def write_image(processor: Processor, instruction: Instruction) -> None:
@@ -206,7 +205,7 @@ def read_lookup_table(processor: Processor, instruction: Instruction) -> None:
 
 EXECUTORS: Final[Executors] = {
     "ERS": erase,
-    "BERS": erase_everything,
+    "BERS": erase,
     "WI": write_image,
     "RI": read_image,
     "WR": write_raster,
