@@ -34,32 +34,15 @@ class TextStyle:
     background: int
     transparent: bool
 
-    @property
-    def dots_each(self) -> tuple[int, int]:
-        """The size of a cell along the scan and across it, in dots."""
-        along, across = self.dimensions
-        return max(1, min(along, LARGEST_CELL)), max(1, min(across, LARGEST_CELL))
 
-    @property
-    def cell(self) -> tuple[int, int]:
-        """The size of a cell along the scan and across it, in pixels."""
-        return self.dots_each[0] * self.size[0], self.dots_each[1] * self.size[1]
-
-    @property
-    def step(self) -> tuple[int, int]:
-        """The distances to the next cell and to the next line of text, in pixels."""
-        return self.cell[0] + self.spacing[0] * self.size[0], self.cell[1] + self.spacing[1] * self.size[1]
-
-    def dots(self, shapes: Dots) -> Dots:
-        """The shapes of characters, (n, lines, elements), scaled and side by side as [outer, inner] dots."""
-        along, across = self.dots_each
-        cells = shapes[:, :across, :along]
-        if cells.shape[1:] != (across, along):
-            part, cells = cells, np.zeros((len(shapes), across, along), np.bool_)
-            cells[:, : part.shape[1], : part.shape[2]] = part
-        if self.size != (1, 1):
-            cells = np.repeat(np.repeat(cells, self.size[1], axis=1), self.size[0], axis=2)
-        return beside(cells, self.step[0])
+def scaled(shapes: Dots, dots_each: tuple[int, int], size: tuple[int, int]) -> Dots:
+    """The shapes of characters, (n, lines, elements), cut to cells of these dots; each dot is repeated."""
+    along, across = dots_each
+    cells = shapes[:, :across, :along]
+    if cells.shape[1:] != (across, along):
+        part, cells = cells, np.zeros((len(shapes), across, along), np.bool_)
+        cells[:, : part.shape[1], : part.shape[2]] = part
+    return cells if size == (1, 1) else np.repeat(np.repeat(cells, size[1], axis=1), size[0], axis=2)
 
 
 def beside(cells: Dots, step: int) -> Dots:
@@ -97,7 +80,10 @@ def write_text(
     """
     if window.is_empty:
         window = order.block_window(start, 0x10000, 0x10000)
-    (along, across), (step, line_step) = style.cell, style.step
+    # Compute the sizes of a cell and the distances of cells, along the scan and across it.
+    dots_each = min(max(1, style.dimensions[0]), LARGEST_CELL), min(max(1, style.dimensions[1]), LARGEST_CELL)
+    along, across = dots_each[0] * style.size[0], dots_each[1] * style.size[1]
+    step, line_step = along + style.spacing[0] * style.size[0], across + style.spacing[1] * style.size[1]
     corner = order.corner(window)
     width, height = order.inner_and_outer(window)
     inner, outer = order.steps(window, start)
@@ -122,7 +108,7 @@ def write_text(
         if line > seen_lines.start:
             yield
         if len(cells):
-            dots = style.dots(shapes[cells])
+            dots = beside(scaled(shapes[cells], dots_each, style.size), step)
             whole = beside(np.ones((len(cells), across, along), np.bool_), step) if step != along else None
             written = dots if style.transparent else whole
             place = order.stepped(corner, first + seen.start * step, outer + line * line_step)
