@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from ramtek_emu.arrays import Colors, Words
-from ramtek_emu.checks import checked_stream, is_whole
+from ramtek_emu.checks import checked_number, checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration, checked_configuration
 from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.decoder import Decoder
@@ -160,12 +160,9 @@ class Ramtek9300:
 
     def receive(self, count: int) -> Words:
         """The next `count` words of the replies, uint16; ReplyError if fewer are waiting."""
-        waiting, replies = self.processor.waiting, self.processor.replies
-        if not is_whole(count) or not 0 <= count <= waiting:
-            raise ReplyError(
-                f"the words received must be 0 to {waiting}, which wait, not {count!r}; "
-                "send an instruction that reads them first"
-            )
+        advice = "send an instruction that reads them first"
+        count = checked_number(count, "the words received", 0, self.processor.waiting, advice, ReplyError)
+        replies = self.processor.replies
         words = np.frombuffer(bytes(replies[: 2 * count]), np.uint16).copy()
         del replies[: 2 * count]
         return words

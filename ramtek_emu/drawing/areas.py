@@ -20,7 +20,7 @@ from ramtek_emu.memory.scan_orders import Window
 MOST_AT_ONCE: Final = 1 << 19
 """The number of pixels, or of runs, that an instruction draws or compares between two pauses.
 
-Limit: a bound on the time between two pauses, 1 to 10 ms.
+Limit: a bound on the time between two pauses, 1 to 10 ms, and 40 ms if every pixel is a run.
 """
 
 
