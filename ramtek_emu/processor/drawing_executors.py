@@ -16,7 +16,7 @@ from ramtek_emu.drawing import curves, plots, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register, signed
+from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
@@ -102,7 +102,7 @@ def write_conic(processor: Processor, instruction: Instruction) -> Pauses:
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
-def write_plot(processor: Processor, instruction: Instruction) -> Pauses | None:
+def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
     """Draw a bar for each number of the data, from the base line to the number.
 
     Hardware: LIN libdoc (a starting point, a scanning mode, the dimension and the spacing in the direction of
@@ -115,54 +115,26 @@ def write_plot(processor: Processor, instruction: Instruction) -> Pauses | None:
     absolute in each addressing mode, with a sign. Only the memory and the write window clip. The operating
     point is then where the next bar begins, at the last number, as fplot.c starts at the first number.
     """
-    parameters, order = processor.parameters, processor.parameters.order
-    values = processor.points(instruction, 1)[:, 0]
-    if not len(values):
-        return None
-    width = max(1, parameters.dimensions[0])
-    backward = order.upward if order.vertical else order.leftward
-    step = -parameters.spacing[0] if backward else parameters.spacing[0]
-    first = parameters.start.line if order.vertical else parameters.start.element
-    places = (first + step * np.arange(len(values) + 1)).astype(np.int16).astype(np.int64)
-    place, value = int(places[-1]), int(values[-1])
-    parameters.start = Point(value, place) if order.vertical else Point(place, value)
     word, _ = processor.colors(instruction)
-    return plots.write_bars(
-        processor.frame_buffer,
-        places[:-1] - (width - 1 if backward else 0),
-        values,
-        width=width,
-        base=signed(parameters.base_line),
-        vertical=order.vertical,
-        word=word,
-        enable=parameters.enable,
-    )
+    values = processor.points(instruction, 1)[:, 0]
+    end = yield from plots.write_bars(processor.frame_buffer, processor.parameters, values, word)
+    processor.parameters.start = end
 
 
 def write_text(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
-    parameters = processor.parameters
     foreground, background = processor.colors(instruction)
-    style = text.TextStyle(
-        dimensions=parameters.dimensions,
-        spacing=parameters.spacing,
-        size=(1 + (parameters.scale & 0x0F), 1 + (parameters.scale >> 8 & 0x0F)),
+    is_standard = processor.parameters.font == STANDARD_FONT
+    next_cell = yield from text.write_text(
+        processor.frame_buffer,
+        processor.parameters,
+        characters() if is_standard else processor.loaded_characters,
+        instruction.data_bytes(),
         foreground=foreground,
         background=background,
         transparent=bool(instruction.low_byte & Flags.ADDITIVE),
     )
-    is_standard = parameters.font == STANDARD_FONT
-    next_cell = yield from text.write_text(
-        processor.frame_buffer,
-        characters() if is_standard else processor.loaded_characters,
-        instruction.data_bytes(),
-        style,
-        window=parameters.window,
-        order=parameters.order,
-        start=parameters.start,
-        enable=parameters.enable,
-    )
-    parameters.start = register(next_cell)
+    processor.parameters.start = register(next_cell)
 
 
 def load_character(processor: Processor, instruction: Instruction) -> None:

@@ -39,6 +39,6 @@ def test_words_around_a_window_are_written_and_read_as_single_words_are(
     assert whole.written == single.written
     read, place = [], Point(*start)
     for _ in range(count):
-        word, place = single.read_scan(window, order, place, 1)
-        read.append(int(word[0]))
+        part, place = single.read_scan(window, order, place, 1)
+        read += part.tolist()
     assert whole.read_scan(window, order, Point(*start), count)[0].tolist() == read
