@@ -35,6 +35,7 @@ def scaled(shapes: Dots, along: int, across: int, size: tuple[int, int]) -> Dots
 def beside(cells: Dots, step: int) -> Dots:
     """Cells, (n, outer, inner), side by side at a distance of `step` pixels."""
     count, across, along = cells.shape
+    step = step if count > 1 else along
     spaced = np.zeros((across, count, step), np.bool_)
     spaced[:, :, :along] = cells.transpose(1, 0, 2)
     side_by_side: Dots = spaced.reshape(across, count * step)
