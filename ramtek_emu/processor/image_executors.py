@@ -145,12 +145,9 @@ def fill(processor: Processor, instruction: Instruction) -> Pauses:
         part = words[band.top : band.bottom + 1, inside.left : inside.right + 1] & mask
         compare(part, word, out=open_pixels[band.top - inside.top : band.bottom + 1 - inside.top])
         yield
-    line, element = parameters.start.line - inside.top, parameters.start.element - inside.left
-    filled = yield from areas.area(open_pixels, line, element)
-    for band in areas.bands(inside):
-        dots = filled[band.top - inside.top : band.bottom + 1 - inside.top]
-        frame_buffer.fill(band, foreground, parameters.enable, dots)
-        yield
+    yield from areas.fill_area(
+        frame_buffer, inside, open_pixels, parameters.start, foreground, parameters.enable
+    )
 
 
 def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
