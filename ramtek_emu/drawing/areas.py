@@ -17,10 +17,10 @@ from ramtek_emu.arrays import Dots, Indices
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
-MOST_AT_ONCE: Final = 1 << 19
+MOST_AT_ONCE: Final = 1 << 17
 """The number of pixels, or of runs, that an instruction draws or compares between two pauses.
 
-Limit: a bound on the time between two pauses, 1 to 10 ms, and 40 ms if every pixel is a run.
+Limit: a bound on the time between two pauses, 1 to 10 ms.
 """
 
 
@@ -35,7 +35,8 @@ def fill_window(
     frame_buffer: FrameBuffer, window: Window, word: int, enable: WriteEnable
 ) -> Iterator[None] | None:
     """Fill a window with a word; returns the pauses if it is large, None if it is filled."""
-    if window.width * window.height <= MOST_AT_ONCE:
+    # Filling is quick, and a picture of 640 x 480 is erased often.
+    if window.width * window.height <= 4 * MOST_AT_ONCE:
         frame_buffer.fill(window, word, enable)
         return None
     return _fill_in_bands(frame_buffer, window.intersection(frame_buffer.window), word, enable)

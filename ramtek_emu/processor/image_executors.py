@@ -97,7 +97,7 @@ def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     words = np.array((background, foreground), np.uint16)
     # Bits that go around the window take many times as long.
     goes_around = 8 * len(data) > parameters.window.width * parameters.window.height
-    at_once = max(1, areas.MOST_AT_ONCE // (128 if goes_around else 8))
+    at_once = max(1, areas.MOST_AT_ONCE // (32 if goes_around else 2))
     for first in range(0, len(data), at_once):
         if first:
             yield
