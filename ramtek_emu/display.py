@@ -12,8 +12,9 @@ from typing import Any, Final
 import numpy as np
 
 from ramtek_emu.arrays import Colors, Words
-from ramtek_emu.checks import checked_stream
+from ramtek_emu.checks import checked_number, checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration, checked_configuration
+from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, ILLEGAL
@@ -159,7 +160,12 @@ class Ramtek9300:
 
     def receive(self, count: int) -> Words:
         """The next `count` words of the replies, uint16; ReplyError if fewer are waiting."""
-        return self.processor.take_reply(count)
+        advice = "send an instruction that reads them first"
+        count = checked_number(count, "the words received", 0, self.processor.waiting, advice, ReplyError)
+        replies = self.processor.replies
+        words = np.frombuffer(bytes(replies[: 2 * count]), np.uint16).copy()
+        del replies[: 2 * count]
+        return words
 
     def field(self) -> Colors:
         """The field that the monitor shows, (lines, elements, 3) uint8."""

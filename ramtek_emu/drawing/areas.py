@@ -15,9 +15,9 @@ import numpy as np
 
 from ramtek_emu.arrays import Dots, Indices
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.memory.scan_orders import Window
+from ramtek_emu.memory.scan_orders import Point, Window
 
-MOST_AT_ONCE: Final = 1 << 19
+MOST_AT_ONCE: Final = 1 << 17
 """The number of pixels, or of runs, that an instruction draws or compares between two pauses.
 
 Limit: a bound on the time between two pauses, 1 to 10 ms.
@@ -35,11 +35,11 @@ def fill_window(
     frame_buffer: FrameBuffer, window: Window, word: int, enable: WriteEnable
 ) -> Iterator[None] | None:
     """Fill a window with a word; returns the pauses if it is large, None if it is filled."""
-    seen = window.intersection(frame_buffer.window)
-    if seen.width * seen.height <= MOST_AT_ONCE:
-        frame_buffer.fill(seen, word, enable)
+    # Filling is quick, and a picture of 640 x 480 is erased often.
+    if window.width * window.height <= 4 * MOST_AT_ONCE:
+        frame_buffer.fill(window, word, enable)
         return None
-    return _fill_in_bands(frame_buffer, seen, word, enable)
+    return _fill_in_bands(frame_buffer, window.intersection(frame_buffer.window), word, enable)
 
 
 def _fill_in_bands(
@@ -50,17 +50,23 @@ def _fill_in_bands(
         yield
 
 
-def area(open_pixels: Dots, line: int, element: int) -> Generator[None, None, Dots]:
-    """Find the open pixels that are connected, up, down, left and right, to the pixel at (line, element).
+def fill_area(
+    frame_buffer: FrameBuffer,
+    window: Window,
+    open_pixels: Dots,
+    start: Point,
+    word: int,
+    enable: WriteEnable,
+) -> Iterator[None]:
+    """Fill the open pixels that are connected, up, down, left and right, to `start`, and pause at times.
 
-    The generator yields None at each pause, and returns the pixels as dots in the shape of `open_pixels`.
+    The window is within the memory and holds `start`; `open_pixels` are its (lines, elements).
     """
-    lines, elements = open_pixels.shape
-    filled = np.zeros_like(open_pixels)
+    line, element = start.line - window.top, start.element - window.left
     if not open_pixels[line, element]:
-        return filled
-    width = elements + 2
-    cut = [slice(band.top, band.bottom + 1) for band in bands(Window(0, 0, elements - 1, lines - 1))]
+        return
+    width = window.width + 2
+    cut = [slice(band.top - window.top, band.bottom + 1 - window.top) for band in bands(window)]
     found: list[tuple[Indices, Indices]] = []
     pairs: list[tuple[Indices, Indices]] = []
     count = seed = 0
@@ -84,7 +90,7 @@ def area(open_pixels: Dots, line: int, element: int) -> Generator[None, None, Do
         yield
     labels = yield from connected(pairs, count)
     count = 0
-    for band, (starts, ends) in zip(cut, found, strict=True):
+    for lines, band, (starts, ends) in zip(bands(window), cut, found, strict=True):
         chosen = labels[count : count + len(starts)] == labels[seed]
         count += len(starts)
         # Measured: for large areas of few runs, repeating takes a twentieth of the time of a sum along lines.
@@ -94,9 +100,9 @@ def area(open_pixels: Dots, line: int, element: int) -> Generator[None, None, Do
         cuts[-1] = (band.stop - band.start) * width
         is_filled = np.zeros(2 * runs + 1, np.bool_)
         is_filled[1::2] = True
-        filled[band] = np.repeat(is_filled, np.diff(cuts)).reshape(-1, width)[:, 1:-1]
+        filled = np.repeat(is_filled, np.diff(cuts)).reshape(-1, width)[:, 1:-1]
+        frame_buffer.fill(lines, word, enable, filled)
         yield
-    return filled
 
 
 def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]:

@@ -192,9 +192,6 @@ def slices(counts: Numbers) -> Iterator[slice]:
     """
     done = counts.cumsum()
     row = before = 0
-    if len(counts) and done[-1] <= MOST_POINTS:
-        yield slice(0, len(counts))
-        return
     while row < len(counts):
         until = max(row + 1, int(np.searchsorted(done, before + MOST_POINTS, side="right")))
         yield slice(row, until)

@@ -81,9 +81,6 @@ class Cursors:
     def __getitem__(self, number: int) -> Cursor:
         return self.all[number]
 
-    def __contains__(self, number: int) -> bool:
-        return 0 <= number < len(self.all)
-
     def state(self) -> dict[str, Any]:
         """The cursors, the switches, and the cursors of each tracking device as pairs (device, mask)."""
         return {

@@ -24,7 +24,7 @@ SHAPE_BYTES_PER_ROW: Final = 4
 
 def has_cursor(processor: Processor, instruction: Instruction) -> bool:
     """Whether the cursor of the instruction exists; if not, the illegal-instruction bit is set."""
-    if instruction.low_byte in processor.cursors:
+    if instruction.low_byte < len(processor.cursors.all):
         return True
     processor.is_illegal = True
     return False

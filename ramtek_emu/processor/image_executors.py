@@ -20,18 +20,17 @@ from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
 def erase(processor: Processor, instruction: Instruction) -> Pauses | None:
-    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag)."""
-    parameters = processor.parameters
-    _, background = processor.colors(instruction)
-    return areas.fill_window(processor.frame_buffer, parameters.window, background, parameters.enable)
+    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag).
 
-
-def erase_everything(processor: Processor, instruction: Instruction) -> Pauses | None:
-    """Assumed: as ERS, but it fills the whole memory and ignores the windows: the B stands for bulk."""
+    Assumed: BERS fills the whole memory and ignores the windows: the B stands for bulk.
+    """
     parameters = processor.parameters
+    window, enable = parameters.window, parameters.enable
+    if instruction.format.name == "BERS":
+        window = parameters.whole_window
+        enable = enable._replace(window=window)
     _, background = processor.colors(instruction)
-    enable = parameters.enable._replace(window=parameters.whole_window)
-    return areas.fill_window(processor.frame_buffer, enable.window, background, enable)
+    return areas.fill_window(processor.frame_buffer, window, background, enable)
 
 
 def write_image(processor: Processor, instruction: Instruction) -> None:
@@ -98,7 +97,7 @@ def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     words = np.array((background, foreground), np.uint16)
     # Bits that go around the window take many times as long.
     goes_around = 8 * len(data) > parameters.window.width * parameters.window.height
-    at_once = max(1, areas.MOST_AT_ONCE // (128 if goes_around else 8))
+    at_once = max(1, areas.MOST_AT_ONCE // (32 if goes_around else 2))
     for first in range(0, len(data), at_once):
         if first:
             yield
@@ -146,12 +145,9 @@ def fill(processor: Processor, instruction: Instruction) -> Pauses:
         part = words[band.top : band.bottom + 1, inside.left : inside.right + 1] & mask
         compare(part, word, out=open_pixels[band.top - inside.top : band.bottom + 1 - inside.top])
         yield
-    line, element = parameters.start.line - inside.top, parameters.start.element - inside.left
-    filled = yield from areas.area(open_pixels, line, element)
-    for band in areas.bands(inside):
-        dots = filled[band.top - inside.top : band.bottom + 1 - inside.top]
-        frame_buffer.fill(band, foreground, parameters.enable, dots)
-        yield
+    yield from areas.fill_area(
+        frame_buffer, inside, open_pixels, parameters.start, foreground, parameters.enable
+    )
 
 
 def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
@@ -206,7 +202,7 @@ def read_lookup_table(processor: Processor, instruction: Instruction) -> None:
 
 EXECUTORS: Final[Executors] = {
     "ERS": erase,
-    "BERS": erase_everything,
+    "BERS": erase,
     "WI": write_image,
     "RI": read_image,
     "WR": write_raster,

@@ -20,9 +20,7 @@ from typing import Any, Final
 import numpy as np
 
 from ramtek_emu.arrays import Numbers, Words
-from ramtek_emu.checks import is_whole
 from ramtek_emu.configuration import Configuration
-from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import initial_loaded_characters
@@ -139,17 +137,6 @@ class Processor:
     def reply(self, words: Words) -> None:
         """Store words until the host receives them."""
         self.replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
-
-    def take_reply(self, count: int) -> Words:
-        """The next `count` words of the replies; ReplyError if fewer are waiting."""
-        if not is_whole(count) or not 0 <= count <= self.waiting:
-            raise ReplyError(
-                f"the words received must be 0 to {self.waiting}, which wait, not {count!r}; "
-                "send an instruction that reads them first"
-            )
-        words = np.frombuffer(bytes(self.replies[: 2 * count]), np.uint16).copy()
-        del self.replies[: 2 * count]
-        return words
 
     def colors(self, instruction: Instruction) -> tuple[int, int]:
         """The foreground and the background word, exchanged if the swap flag is set."""

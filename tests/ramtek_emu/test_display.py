@@ -245,10 +245,7 @@ def test_a_number_of_words_that_cannot_be_received_costs_no_reply(count: Any) ->
     display.send([0x1700])  # type: ignore[arg-type]
     with pytest.raises(ReplyError) as refusal:
         display.receive(count)
-    assert str(refusal.value) == (
-        f"the words received must be 0 to 2, which wait, not {count!r}; "
-        "send an instruction that reads them first"
-    )
+    assert str(refusal.value).endswith(f"0 to 2, not {count!r}; send an instruction that reads them first")
     assert display.receive(np.int64(2)).tolist() == [0, 0]  # type: ignore[arg-type]
 
 
