@@ -29,6 +29,12 @@ def test_data_are_views_of_the_words_sent() -> None:
     assert np.shares_memory(instruction.data, stream)
 
 
+@pytest.mark.parametrize("length", [1, 24, 25, 90])
+def test_a_row_of_illegal_words_is_one_instruction(length: int) -> None:
+    parts = [*Decoder(FAMILY).split(words(f"FFFF*{length} 0700"))]
+    assert list(map(len, parts)) == [length, 1]
+
+
 def test_after_it_is_cleared_a_decoder_begins_a_new_row_of_illegal_words() -> None:
     decoder, rows = Decoder(FAMILY), []
     for is_cleared in (False, False, True):
