@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -27,6 +28,12 @@ def test_data_are_views_of_the_words_sent() -> None:
     stream = np.array([0x0A01, 6, 1, 2, 3], np.uint16)
     (instruction,) = Decoder(FAMILY).feed(stream)
     assert np.shares_memory(instruction.data, stream)
+
+
+@pytest.mark.parametrize("length", [1, 24, 25, 90])
+def test_a_row_of_illegal_words_is_one_instruction(length: int) -> None:
+    parts = [*Decoder(FAMILY).split(words(f"FFFF*{length} 0700"))]
+    assert list(map(len, parts)) == [length, 1]
 
 
 def test_after_it_is_cleared_a_decoder_begins_a_new_row_of_illegal_words() -> None:
