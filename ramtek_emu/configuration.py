@@ -24,7 +24,7 @@ class EntryFormat(Enum):
 KINDS: Final = {
     "name": str, "entry_format": EntryFormat, "extended": bool, "monochrome": bool, "timing": Timing | None,
 }  # fmt: skip
-"""The types of the fields of a configuration that are no whole numbers."""
+"""The types of the fields that hold no whole number."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,26 +7,24 @@
 | {number:04}.png | a numbered PNG for each field | lossless |
 
 A field after the first is stored as the rectangle that differs from the field before. Pillow encodes the
-fields; the films are put together here, because Pillow keeps all fields in memory until the end. The number
-of fields need not be known before the last. `TimedFilm` takes fields with the times at which they were shown.
+rectangles; the films are put together here, because Pillow keeps all fields in memory until the end. The
+number of fields need not be known before the last. `TimedFilm` takes fields with the times at which they were
+shown.
 
-Measured for 640 x 480 fields of the coupe, a turn and a fade of its paint: WebP takes 9 ms and 30 to 51 KB a
-field, an animated PNG 10 ms and 61 to 72 KB.
+Measured for 640 x 480 fields of the coupe: a WebP takes 50 KB a field for a turn and 56 KB for a fade of its
+paint. An animated PNG takes about 1.4 times the bytes and 1.2 times the time.
 Measured and rejected: slower methods of WebP, which save a fifth to a quarter of the bytes for three to seven
-times the time; WebP whose every field is encoded by itself, which are twice as large.
+times the time; docs/PERFORMANCE.md has more.
 """
 
 from __future__ import annotations
 
 import math
-import os
-import re
 from collections.abc import Callable, Iterable, Iterator
 from io import BytesIO
-from itertools import islice
 from os import PathLike, fspath
 from pathlib import Path
-from struct import pack, unpack_from
+from struct import pack
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -35,7 +33,7 @@ from PIL import Image
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError
 from ramtek_emu.png import SIGNATURE, chunk, chunks, png_bytes
-from ramtek_emu.writing import Output, refusal, refuse_output, write_atomically
+from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 LEAST_RATE: Final = 0.1
 MOST_RATE: Final = 100.0
@@ -46,9 +44,6 @@ MOST_FIELDS: Final = 100_000
 
 LARGEST_WEBP: Final = 16383
 """The most elements and lines of a WebP."""
-
-NUMBER: Final = re.compile(r"\{number(?::0?([0-9]{1,2}))?\}")
-"""The number of a picture in a pattern of names, with its number of digits."""
 
 
 def write_film(
@@ -61,9 +56,9 @@ def write_film(
 ) -> None:
     """Write (lines, elements, 3) uint8 fields to a film in the format of its suffix.
 
-    `fields` are taken one by one. With `loop`, the film begins again at its end. A WebP stores equal
-    consecutive fields once, with a longer duration. `path` may be a pattern of numbered pictures, such as
-    "frame-{number:04}.png"; they have no rate.
+    `fields` are taken one by one. With `loop`, the film begins again at its end. `path` may be a pattern of
+    numbered pictures, such as "frame-{number:04}.png"; they have no rate.
+
     Raises ColorsError for fields of different sizes, for none or too many, and for a wrong rate. Raises
     OutputError, OutputExistsError or WriteError if the film cannot be written. Then there is no file, but
     numbered pictures that were finished stay.
@@ -72,9 +67,7 @@ def write_film(
     suffix = Path(path).suffix.lower()
     if suffix == PICTURES:
         for number, field in enumerate(_alike(fields), 1):
-            write_atomically(
-                numbered(fspath(path), number), png_bytes(field), overwrite=overwrite, sync=False
-            )
+            write_atomically(numbered(path, number), png_bytes(field), overwrite=overwrite, sync=False)
         return
     with Output(path, overwrite=overwrite) as output:
         FORMATS[suffix](output, _alike(fields), fields_per_second, loop)
@@ -101,46 +94,25 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
 
 def _check_pattern(pattern: Path, overwrite: bool) -> None:
     """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
-    numbers = list(NUMBER.finditer(pattern.name))
-    if len(numbers) != 1 or any(brace in f"{pattern.parent}{NUMBER.sub('', pattern.name)}" for brace in "{}"):
+    try:
+        first, second = (numbered(pattern, number) for number in (1, 2))
+    except (LookupError, ValueError, AttributeError):
+        first = second = ""
+    if first == second:
         raise OutputError(
-            f"numbered pictures must have one number in their name, as in frame-{{number:04}}.png, not"
+            "numbered pictures must have a number in their name, as in frame-{number:04}.png, not"
             f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
         )
-    refuse_output(numbered(fspath(pattern), 1), overwrite)
-    try:
-        others = [] if overwrite else sorted(os.listdir(pattern.parent))
-    except OSError as error:
-        raise refusal(pattern.parent, error) from None
-    for other in filter(_picture_names(pattern).fullmatch, others):
-        refuse_output(pattern.parent / other, overwrite)
+    refuse_output(first, overwrite)
 
 
-def _picture_names(pattern: Path) -> re.Pattern[str]:
-    """The names of the pictures of a pattern with a number."""
-    before, _, after = NUMBER.split(pattern.name)
-    return re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
-
-
-def is_numbered(path: str | PathLike[str], film: str | PathLike[str]) -> bool:
-    """Whether a path may be one of the pictures of a film of numbered pictures.
-
-    >>> is_numbered("frame-0007.png", "frame-{number:04}.png"), is_numbered("7.webp", "8.webp")
-    (True, False)
-    """
-    path, film = Path(path), Path(film)
-    if film.suffix.lower() != PICTURES or not _picture_names(film).fullmatch(path.name):
-        return False
-    return os.path.realpath(path.parent) == os.path.realpath(film.parent)
-
-
-def numbered(pattern: str, number: int) -> str:
+def numbered(pattern: str | PathLike[str], number: int) -> str:
     """The path of a numbered picture.
 
     >>> numbered("frame-{number:04}.png", 7)
     'frame-0007.png'
     """
-    return NUMBER.sub(lambda match: f"{number:0{int(match[1] or 1)}}", pattern)
+    return fspath(pattern).format(number=number)
 
 
 def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
@@ -200,96 +172,50 @@ def differing_area(field: Colors, before: Colors | None) -> Rectangle:
 
 # Animated WebP, by its specification, RFC 9649: a header, and a chunk ANMF for each field.
 
-WEBP_GROUP: Final = 17
-"""Fields that are encoded together: after so many, libwebp begins with a whole field again."""
-
-WEBP_GROUP_PIXELS: Final = 1 << 24
-"""Limit: pixels of the fields that are encoded together, unless a field alone has more. They take 50 MB, and
-their data no more."""
-
 LARGEST_RIFF: Final = (1 << 32) - 10
 """Limit: bytes of a WebP after its first eight."""
 
+ANIMATED: Final = 0x02
+"""The flag of an animation in VP8X."""
+
 
 def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> None:
-    timed = _differing(fields, rate)
-    group = [next(timed)]
-    lines, elements, _ = group[0].field.shape
-    if max(lines, elements) > LARGEST_WEBP:
-        raise OutputError(
-            f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(lines, elements)};"
-            " write .apng"
-        )
-    size = pack("<I", elements - 1)[:3] + pack("<I", lines - 1)[:3]
-    header = _riff_chunk(b"VP8X", bytes(4) + size) + _riff_chunk(b"ANIM", pack("<IH", 0, 0 if loop else 1))
-    output.write(b"RIFF\0\0\0\0WEBP" + header)
-    written, flags = 4 + len(header), ANIMATED
-    most = max(1, min(WEBP_GROUP, WEBP_GROUP_PIXELS // (lines * elements)))
-    while group:
-        group += islice(timed, most - len(group))
-        data, has_alpha = _webp_fields(group, size)
-        flags |= has_alpha
+    before: Colors | None = None
+    written = 0
+    for number, field in enumerate(fields):
+        if before is None:
+            lines, elements, _ = field.shape
+            if max(lines, elements) > LARGEST_WEBP:
+                raise OutputError(
+                    f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(lines, elements)};"
+                    " write .apng"
+                )
+            sizes = _three_bytes(elements - 1, lines - 1)
+            header = b"WEBP" + _riff_chunk(b"VP8X", pack("<I", ANIMATED) + sizes)
+            header += _riff_chunk(b"ANIM", pack("<IH", 0, 0 if loop else 1))
+            output.write(b"RIFF\0\0\0\0" + header)
+            written = len(header)
+        area = differing_area(field, before)
+        # The format has half of the place.
+        left, top = area.left // 2 * 2, area.top // 2 * 2
+        part = field[top : area.top + area.lines, left : area.left + area.elements]
+        still = BytesIO()
+        Image.fromarray(part).save(still, "WEBP", lossless=True, quality=50, method=0)
+        place = left // 2, top // 2, part.shape[1] - 1, part.shape[0] - 1, milliseconds_of(number, rate)
+        # A still picture is a header of 12 bytes and the chunk of its pixels.
+        data = _riff_chunk(b"ANMF", _three_bytes(*place) + bytes(1) + still.getvalue()[12:])
         written += len(data)
         if written > LARGEST_RIFF:
             raise OutputError(
                 "a WebP must have at most 4 GB, not more; write .apng, or fewer or smaller fields"
             )
         output.write(data)
-        group = list(islice(timed, 1))
+        before = field
     output.write_at(4, pack("<I", written))
-    output.write_at(20, bytes([flags]))
 
 
-ANIMATED: Final = 0x02
-HAS_ALPHA: Final = 0x10
-"""The flags in VP8X of an animation, and of fields with transparent pixels, which show the field before."""
-
-
-class _TimedField(NamedTuple):
-    """A field with its duration in milliseconds."""
-
-    field: Colors
-    milliseconds: int
-
-
-def _differing(fields: Iterator[Colors], rate: float) -> Iterator[_TimedField]:
-    """The fields that differ from the field before, each with the time of its repeats."""
-    shown: Colors | None = None
-    duration = 0
-    for number, field in enumerate(fields):
-        if shown is not None and not np.array_equal(field, shown):
-            yield _TimedField(shown, duration)
-            duration = 0
-        shown = field
-        duration += milliseconds_of(number, rate)
-    if shown is not None:
-        yield _TimedField(shown, duration)
-
-
-def _webp_fields(group: list[_TimedField], size: bytes) -> tuple[bytes, int]:
-    """The chunks ANMF of some fields, of which the first is stored whole; and HAS_ALPHA or 0."""
-    first, *others = (Image.fromarray(timed.field) for timed in group)
-    durations = [timed.milliseconds for timed in group]
-    buffer = BytesIO()
-    how = {"duration": durations, "lossless": True, "quality": 50, "method": 0}
-    first.save(buffer, "WEBP", save_all=True, append_images=others, **how)
-    parts = list(_riff_chunks(buffer.getvalue()))
-    if others:
-        fields = b"".join(_riff_chunk(*part) for part in parts if part[0] == b"ANMF")
-        return fields, dict(parts)[b"VP8X"][0] & HAS_ALPHA
-    # Pillow writes a still picture, whose chunk is the data of the field.
-    (part,) = parts
-    place = bytes(6) + size + pack("<I", durations[0])[:3] + bytes(1)
-    return _riff_chunk(b"ANMF", place + _riff_chunk(*part)), 0
-
-
-def _riff_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """The kinds and data of the chunks of a WebP."""
-    place = 12
-    while place < len(data):
-        kind, length = unpack_from("<4sI", data, place)
-        yield kind, data[place + 8 : place + 8 + length]
-        place += 8 + length + length % 2
+def _three_bytes(*numbers: int) -> bytes:
+    return b"".join(number.to_bytes(3, "little") for number in numbers)
 
 
 def _riff_chunk(kind: bytes, data: bytes) -> bytes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Final
@@ -45,8 +44,6 @@ def conformance(
 
     claims = [claim for claim in all_claims() if all(map(claim.is_about, only))]
     if command:
-        if shutil.which(command[0]) is None:
-            raise click.UsageError(f"COMMAND must be a program, not {command[0]!r}; give its path")
         claims = [claim for claim in claims if not claim.in_process]
     if not claims:
         raise click.UsageError(
@@ -54,7 +51,12 @@ def conformance(
         )
     run = partial(failure_on, command=command, seconds=seconds) if command else failure_here
     with ThreadPoolExecutor(os.cpu_count() if command else 1) as pool:
-        failures = list(pool.map(run, claims))
+        try:
+            failures = list(pool.map(run, claims))
+        except OSError as cause:
+            raise click.UsageError(
+                f"COMMAND must be a program, not {command[0]!r} ({cause.strerror}); give its path"
+            ) from cause
 
     click.echo(f"{'subject':<14}{'claims':>7}{'passed':>8}{'failed':>8}")
     for subject in dict.fromkeys(claim.subject for claim in claims):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import os
 import select
 import signal
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
@@ -30,7 +31,10 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
     """The names of configurations, for completion in a shell, in upper or lower case."""
-    return [name for name in CONFIGURATIONS if name.startswith(incomplete.upper())]
+    names = [name.lower().replace("_", "-") for name in CONFIGURATIONS]
+    # The longer names begin with the shorter: offer them when a name is complete.
+    names += [f"{name}-monochrome" for name in names if incomplete.lower().replace("_", "-").startswith(name)]
+    return [name for name in names if name.startswith(incomplete.lower().replace("_", "-"))]
 
 
 configuration_option: Final = click.option(
@@ -106,26 +110,10 @@ def refuse_outputs(force: bool, *paths: str | None, pictures: Sequence[str | Non
         )
 
 
-Handler = Callable[[int, object], object] | signal.Handlers
-
-
-@contextmanager
-def handling(handlers: Mapping[int, Handler]) -> Iterator[None]:
-    """Handle signals within a `with` block. Signals that the program's parent ignores stay ignored."""
-    before = {
-        number: signal.signal(number, handler)
-        for number, handler in handlers.items()
-        if signal.getsignal(number) is not signal.SIG_IGN
-    }
-    try:
-        yield
-    finally:
-        for number, previous in before.items():
-            signal.signal(number, previous)
-
-
 WAIT_SECONDS: Final = 0.1
 """Limit: how long a signal may be unnoticed while nothing arrives."""
+REST_SECONDS: Final = 1.0
+"""Assumed: a host that sends nothing for so long has drawn its picture and loaded its table."""
 
 
 class Run:
@@ -146,6 +134,8 @@ class Run:
         """Records words; None if no recording was asked for."""
         self.hints: set[str] = set()
         """The subjects of the hints that were printed."""
+        self._rest = 0, math.inf
+        """The count of words received, and the time at which their host is at rest."""
 
     def hint(self, display: Ramtek9300) -> str:
         """Print a hint, once, about words that are all black, and about an instruction that is missing.
@@ -156,11 +146,24 @@ class Run:
         if "dark" not in self.hints and display.scan_out.is_dark:
             hints["dark"] = "words were drawn, and nothing is lit: --table gray shows them (F2 in a window)"
         if "foreign" not in self.hints and foreign is not None:
-            hints["foreign"] = f"{foreign} is no instruction of a 9300; --configuration family has it"
+            hints["foreign"] = f"a 9300 does not take {foreign}, but the display FAMILY does"
         self.hints |= hints.keys()
         for hint in hints.values():
             tell(hint)
         return "; ".join(hints.values())
+
+    def hint_at_rest(self, display: Ramtek9300, seconds: float) -> str:
+        """Print the hints once the host has sent no words for REST_SECONDS; returns them as `hint` does.
+
+        `seconds` is the time of any clock; call this function in each turn of a window.
+        """
+        words, rests_at = self._rest
+        if display.words_received != words:
+            self._rest = display.words_received, seconds + REST_SECONDS
+        elif seconds >= rests_at:
+            self._rest = words, math.inf
+            return self.hint(display)
+        return ""
 
     def receive(self, number: int, _: object) -> None:
         """Remember a signal."""
@@ -214,7 +217,11 @@ def running(
     command ends with its exit code. After any other error, no output is written.
     """
     run = Run()
-    with handling(dict.fromkeys(ENDING, run.receive)), ExitStack() as opened:
+    with ExitStack() as handled, ExitStack() as opened:
+        for number in ENDING:
+            # A signal that the program's parent ignores stays ignored.
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                handled.callback(signal.signal, number, signal.signal(number, run.receive))
         if record is not None:
             recording = opened.enter_context(Output(record, overwrite=force))
 
@@ -252,11 +259,7 @@ def open_stream(path: str) -> BinaryIO:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
         return sys.stdin.buffer
     try:
-        if Path(path).is_dir():
-            raise MissingInputError(f"a stream must be a file, not the folder {path}; name a file in it")
         return open(path, "rb")
-    except MissingInputError:
-        raise
     except (OSError, ValueError) as cause:
         raise MissingInputError(
             f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"
@@ -321,20 +324,13 @@ def show(
     """
     from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
 
-    rested_at = 0
-
     def tick() -> None:
-        nonlocal rested_at
         if run.ends:
             monitor.close()
         else:
-            before = display.words_received
             serve_for(TICK_SECONDS)
-            # A program that draws may load the table in the end: wait until it rests.
-            if rested_at != before == display.words_received:
-                rested_at = before
-                if hint := run.hint(display):
-                    monitor.tell(hint)
+            if hint := run.hint_at_rest(display, time.monotonic()):
+                monitor.tell(hint)
 
     monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
     monitor.open()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ramtek_emu.commands.displays import (
+    Run,
     configuration_option,
     display_asked_for,
     read_stream,
@@ -117,17 +118,20 @@ def inspect(
     refuse_outside("an element", None if who is None else who[0], sizes.elements - 1)
     refuse_outside("a line", None if who is None else who[1], sizes.lines - 1)
     replay = Replay(read_stream(stream, sizes), display)
-    last = len(replay.stream)
+    run, last = Run(), len(replay.stream)
     refuse_outside("an instruction", at, last, stream)
     refuse_outside("an instruction", None if numbers is None else numbers[1], last, stream)
     if output is None and snapshot is None and who is None and not as_json:
-        from ramtek_emu.inspection import inspector
+        from ramtek_emu.inspection.inspector import Inspector
         from ramtek_emu.inspection.session import inspection_of
 
+        def hint(seconds: float) -> str:
+            # Before the end, the stream may still load the table.
+            return run.hint_at_rest(replay.display, seconds) if replay.number == last else ""
+
         replay.go_to(0 if at is None else at)
-        inspector.inspect(
-            inspection_of(replay), f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}"
-        )
+        caption = f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}"
+        Inspector(inspection_of(replay), caption).run(hint)
         return
     number = last if at is None else at
     if numbers is not None and output is not None:
@@ -136,6 +140,7 @@ def inspect(
         tell(f"wrote {output}")
     elif output is not None:
         replay.go_to(number)
+        run.hint(replay.display)
         replay.display.save_png(output, overwrite=force)
         tell(f"wrote {output}")
     if snapshot is not None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import click
-from click.core import ParameterSource
 
 from ramtek_emu.command_line import Ended
 from ramtek_emu.commands.displays import (
@@ -22,11 +22,10 @@ from ramtek_emu.commands.displays import (
     tell_unexecuted,
     unreadable,
 )
-from ramtek_emu.errors import ColorsError, MissingInputError
+from ramtek_emu.errors import MissingInputError
 
 if TYPE_CHECKING:
-    from ramtek_emu.host.pipe import CutReader
-    from ramtek_emu.host.server import HostSession
+    from ramtek_emu.arrays import Colors
 
 EXAMPLES: Final = """\b
 Examples:
@@ -45,7 +44,6 @@ FRAMES_PER_SECOND: Final = 24.0
 @click.command(epilog=EXAMPLES)
 @click.argument("stream", type=click.Path())
 @display_options
-@click.option("--window", is_flag=True, help="Open the window even if a picture is written.")
 @click.option(
     "--loads-per-second",
     type=click.IntRange(1, 1000),
@@ -66,16 +64,13 @@ FRAMES_PER_SECOND: Final = 24.0
 )
 @click.option(
     "--fps",
-    type=float,
-    default=FRAMES_PER_SECOND,
-    show_default=True,
+    # The limits are those of `films`, whose module would import Pillow for each command.
+    type=click.FloatRange(0.1, 100),
     metavar="RATE",
-    help="Frames per second of the film.",
+    help=f"Frames per second of the film, {FRAMES_PER_SECOND:g} if not given.",
 )
 @click.option("--once", is_flag=True, help="Show the film once; otherwise it begins again at its end.")
-@click.pass_context
 def play(
-    context: click.Context,
     stream: str,
     output: str | None,
     snapshot: str | None,
@@ -84,11 +79,10 @@ def play(
     start: str | None,
     force: bool,
     record: str | None,
-    window: bool,
     loads_per_second: int | None,
     film: str | None,
     every: int | None,
-    fps: float,
+    fps: float | None,
     once: bool,
 ) -> None:
     """Run STREAM, a file of 16-bit words with the low byte first; - is stdin.
@@ -96,17 +90,16 @@ def play(
     Without -o, --snapshot or --film it is shown in a window. The replies to instructions that read are
     dropped.
     """
-    in_window = window or (output is None and snapshot is None and film is None)
+    in_window = output is None and snapshot is None and film is None
     if loads_per_second is not None and not in_window:
-        raise click.UsageError("--loads-per-second is for the window; add --window, or leave it out")
-    refuse_film(context, film, force)
+        raise click.UsageError("--loads-per-second is for the window; leave it out, or the outputs")
+    refuse_film(film, every, fps, once, force)
     refuse_outputs(force, record, film, pictures=[output, snapshot])
     file = open_stream(stream)
     display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.host import pipe
     from ramtek_emu.host.port import waiting_bytes
-    from ramtek_emu.host.server import HostSession
 
     number = file.fileno()
     with file, running(display, output, snapshot, record, force) as run:
@@ -125,20 +118,23 @@ def play(
                 run.fail(failure)
                 return b""
 
-        session = HostSession(display, run.record)
         if in_window:
             paced: pipe.Read = read_for_window
             if loads_per_second is not None:
-                paced = pipe.PacedReader(paced, loads_per_second, display.configuration)
-            show(display, run, pipe.PolledPipe(session, paced).serve_for)
+                paced = pipe.paced(paced, loads_per_second, display.configuration)
+            with pipe.PipeServer(display, paced, record=run.record) as server:
+                show(display, run, server.serve_for)
             return
+        server = pipe.PipeServer(display, read, record=run.record)
+        session = server.session
         waiting = 0
         if film is None:
-            pipe.serve_pipe(session, read, None, lambda: run.ends)
+            server.serve(lambda: run.ends)
         else:
             is_cut = pipe.is_load if every is None else pipe.every(every)
             cut = pipe.CutReader(read, display.configuration, is_cut)
-            write_fields(film, session, cut, run, fps, not once, force)
+            fields = pipe.stream_fields(session, cut, lambda: run.ends)
+            write_fields(film, fields, run, fps or FRAMES_PER_SECOND, not once, force)
             waiting = cut.waiting
         tell_the_end(session, is_cut_off=run.ends)
         tell_unexecuted(session.unexecuted + (waiting + waiting_bytes(number)) // 2)
@@ -146,54 +142,26 @@ def play(
         raise Ended(run.signal)
 
 
-def refuse_film(context: click.Context, film: str | None, force: bool) -> None:
+def refuse_film(film: str | None, every: int | None, fps: float | None, once: bool, force: bool) -> None:
     """Refuse a film that cannot be written, and options of a film without a film, before the work."""
-    given = {name: context.get_parameter_source(name) for name in ("every", "fps", "once")}
-    options = [name for name, source in given.items() if source is ParameterSource.COMMANDLINE]
     if film is None:
-        if options:
-            raise click.UsageError(f"--{options[0]} is for a film; add --film FILE, or leave it out")
+        for option, value in (("--every", every), ("--fps", fps), ("--once", once or None)):
+            if value is not None:
+                raise click.UsageError(f"{option} is for a film; add --film FILE, or leave it out")
         return
-    if context.params["window"]:
-        raise click.UsageError(
-            "a film must be written without a window, not with --window; leave it out, or press F3"
-            " in the window to record what it shows"
-        )
-    from ramtek_emu.films import check_film, is_numbered
+    from ramtek_emu.films import check_film
 
-    try:
-        check_film(film, context.params["fps"], force)
-    except ColorsError as refusal:
-        raise click.UsageError(str(refusal)) from None
-    for other in filter(None, map(context.params.get, ("output", "snapshot", "record"))):
-        if is_numbered(other, film):
-            raise click.UsageError(
-                f"two outputs must be two files, not {other} and a picture of {film}; rename one"
-            )
+    check_film(film, fps or FRAMES_PER_SECOND, force)
 
 
-def write_fields(
-    path: str, session: HostSession, read: CutReader, run: Run, rate: float, loop: bool, force: bool
-) -> None:
+def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loop: bool, force: bool) -> None:
     """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on.
 
     Raises MissingInputError if the stream cannot be read to its end.
     """
-    from ramtek_emu.films import MOST_FIELDS, write_film
-    from ramtek_emu.host.pipe import StreamFields
+    from ramtek_emu.films import write_film
 
-    film = StreamFields(session, read, MOST_FIELDS, lambda: run.ends)
-    fields = iter(film)
-    is_written = run.attempt(
-        lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)
-    )
+    if run.attempt(lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)):
+        tell(f"wrote {path}")
     for _ in fields:
         pass
-    if not is_written:
-        return
-    if film.left_out:
-        tell(
-            f"a film such as {path} must have at most {MOST_FIELDS:,} frames, not more: it has the first"
-            f" {MOST_FIELDS - 1:,} and the last; make fewer with --every"
-        )
-    tell(f"wrote {path}, {film.count:,} frame{'' if film.count == 1 else 's'}")

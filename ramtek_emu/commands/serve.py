@@ -6,13 +6,13 @@ import os
 import select
 import stat
 import sys
-import time
 from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
+from click.core import ParameterSource
 
 from ramtek_emu.commands.displays import (
     display_asked_for,
@@ -28,11 +28,8 @@ from ramtek_emu.commands.displays import (
 if TYPE_CHECKING:
     from ramtek_emu.commands.displays import Run
     from ramtek_emu.host.pipe import Read, Write
-    from ramtek_emu.host.server import HostSession, Server
+    from ramtek_emu.host.server import Server
     from ramtek_emu.inspection.replay import Replay
-
-Obey = Callable[[], object]
-"""A function that obeys the waiting lines for the joystick."""
 
 EXAMPLES: Final = """\b
 Examples:
@@ -45,15 +42,22 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
+WITHOUT_EFFECT: Final = (
+    ("host", "unix"),
+    ("host", "stdio"),
+    ("idle", "stdio"),
+    ("once", "stdio"),
+    ("once", "window"),
+    ("once", "inspect"),
+)
+"""Options that have no effect beside the second option."""
 STEP_SECONDS: Final = 0.1
-JOYSTICK_SECONDS: Final = 0.02
-"""How long a line for the joystick may wait while no words arrive."""
-PIPE_SECONDS: Final = 0.002
-"""How long words on a pipe may wait if `--joystick` is given."""
 WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
 """The most bytes that any pipe takes without waiting, if it can be written."""
 MOST_WRITTEN: Final = 1 << 16
 """The most bytes that are written at once to a pipe that never waits."""
+JOYSTICK_SECONDS: Final = 0.02
+"""How long a line for the joystick may wait while no words arrive."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -78,7 +82,9 @@ MOST_WRITTEN: Final = 1 << 16
 )
 @click.option("--once", is_flag=True, help="End when the first host has left.")
 @display_options
+@click.pass_context
 def serve(
+    context: click.Context,
     port: int | None,
     unix: str | None,
     stdio: bool,
@@ -111,10 +117,14 @@ def serve(
         raise click.UsageError(
             "stdin must be for words or for the joystick, not both; give --joystick a FIFO"
         )
+    refuse_options_without_effect(context)
     refuse_outputs(force, record, pictures=[output, snapshot])
     display = display_asked_for(configuration, start, table)
 
-    from ramtek_emu.host.server import HostSession, TcpServer, UnixServer
+    from ramtek_emu.host.joystick import JoystickLines
+    from ramtek_emu.host.pipe import PipeServer
+    from ramtek_emu.host.port import waiting_bytes
+    from ramtek_emu.host.server import TcpServer, UnixServer
 
     with running(display, output, snapshot, record, force) as run:
         inspected: Replay | None = None
@@ -124,97 +134,92 @@ def serve(
 
             inspected = replay_from(display)
             recording = recording_into(inspected, run.record)
-        server: Server | None = None
+        lines = None if joystick is None else JoystickLines(joystick, tell)
+        server: TcpServer | UnixServer | PipeServer
         if unix is not None:
             server = UnixServer(display, unix, idle_seconds=idle, record=recording)
         elif port is not None:
             server = TcpServer(display, port, host, idle_seconds=idle, record=recording)
-        with server or nullcontext():
-            session = HostSession(display, recording) if server is None else server.session
-            obey: Obey | None = None
-            if joystick is not None:
-                from ramtek_emu.host.joystick import JoystickLines
+        else:
+            server = PipeServer(display, *standard_streams(run), recording)
 
-                obey = JoystickLines(joystick, display.joystick, session.reset, tell).obey
-            if server is None:
-                serve_stdio(session, run, window, obey, inspected)
+        def obey() -> None:
+            if lines is not None:
+                lines.obey(display.joystick, server.session.reset)
+
+        with server:
+            if window or inspected is not None:
+                from ramtek_emu.monitor.window import open_screen
+
+                # Fail before the address is printed.
+                open_screen()
+            if server.address:
+                announce(server.address, host)
+            if window or inspected is not None:
+                watch(server, run, obey, inspected)
+            elif isinstance(server, PipeServer) and joystick is None:
+                server.serve(lambda: run.ends)
             else:
-                serve_hosts(server, run, window, once, obey, inspected)
-                tell_unexecuted(server.unexecuted)
+                while not run.ends and not ((once or stdio) and server.served):
+                    obey()
+                    server.step(STEP_SECONDS if joystick is None else JOYSTICK_SECONDS)
+                if isinstance(server, PipeServer):
+                    server.finish(lambda: run.ends)
+            rest = 0
+            if stdio:
+                tell_the_end(server.session, is_cut_off=run.ends)
+                rest = waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin is not None else 0
+            tell_unexecuted(server.unexecuted + rest)
 
 
-def serve_stdio(
-    session: HostSession, run: Run, window: bool, obey: Obey | None, inspected: Replay | None
-) -> None:
-    """Serve the program at the other end of stdin and stdout until it closes its end."""
-    from ramtek_emu.host.pipe import PolledPipe, serve_pipe
-    from ramtek_emu.host.port import waiting_bytes
-
-    read, write = standard_streams(run)
-    source: HostSession | PolledPipe = session
-    if not window and inspected is None and obey is None:
-        serve_pipe(session, read, write, lambda: run.ends)
-    else:
-        source = pipe = PolledPipe(session, read, write)
-        if window or inspected is not None:
-            watch(session, run, obey, inspected, lambda _: pipe.step(), pipe.serve_for)
-        while obey and not (window or inspected or run.ends or (pipe.ended and pipe.has_replied)):
-            obey()
-            if pipe.ended or not pipe.step():
-                time.sleep(PIPE_SECONDS)
-    tell_the_end(session, is_cut_off=run.ends)
-    tell_unexecuted(source.unexecuted + (waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin else 0))
+def refuse_options_without_effect(context: click.Context) -> None:
+    """Refuse options that would do nothing beside the others."""
+    for option, other in WITHOUT_EFFECT:
+        is_given = context.get_parameter_source(option) is ParameterSource.COMMANDLINE
+        if is_given and context.params[other]:
+            raise click.UsageError(
+                f"--{option} must not be with --{other}, where it has no effect; leave one out"
+            )
 
 
-def watch(
-    session: HostSession,
-    run: Run,
-    obey: Obey | None,
-    inspected: Replay | None,
-    step: Callable[[float], bool],
-    serve_for: Callable[[float], None],
-    is_busy: Callable[[], bool] = lambda: False,
-) -> None:
+def watch(server: Server, run: Run, obey: Callable[[], object], inspected: Replay | None) -> None:
     """Show the display in a window, or in that of an inspector, until it is closed or a signal ends it."""
+    from ramtek_emu.host.server import HOST_SECONDS
+
     if inspected is not None:
-        from ramtek_emu.inspection.inspector import inspect
+        from ramtek_emu.inspection.inspector import Inspector
         from ramtek_emu.inspection.running_host import RunningHost
         from ramtek_emu.inspection.session import inspection_of
 
-        host = RunningHost(session, inspected, step, is_busy, obey or (lambda: None))
-        name = session.display.configuration.name.replace("_", " ")
-        inspect(inspection_of(inspected, host), f"RAMTEK {name}", lambda: run.ends)
+        session = inspection_of(inspected, RunningHost(server, inspected, obey))
+        name = server.display.configuration.name.replace("_", " ")
+        hint = partial(run.hint_at_rest, server.display)
+        Inspector(session, f"RAMTEK {name}").run(hint, lambda: run.ends)
         return
 
-    def obey_and_serve_for(seconds: float) -> None:
-        if obey is not None:
-            obey()
-        serve_for(seconds)
+    def serve_for(seconds: float) -> None:
+        obey()
+        server.serve_for(seconds, HOST_SECONDS)
 
-    show(session.display, run, obey_and_serve_for, is_busy)
+    show(server.display, run, serve_for, lambda: server.busy)
 
 
-def standard_streams(run: Run) -> tuple[Read, Write | None]:
-    """Functions that read stdin and write stdout until a signal ends the display.
+def standard_streams(run: Run) -> tuple[Read, Write]:
+    """Functions that read stdin, until a signal ends the display, and write stdout.
 
     After this call, nothing else can write to stdout.
     """
-    if sys.stdin is None:
-        return lambda _: b"", None
-    number = sys.stdin.fileno()
+    stdin = -1 if sys.stdin is None else sys.stdin.fileno()
 
     def read(most: int) -> bytes:
         # A terminal or a socket raises an error if its other end was closed.
-        with suppress(OSError):
-            return os.read(number, most) if run.wait(number) else b""
+        with suppress(OSError, ValueError):
+            return os.read(stdin, most) if run.wait(stdin) else b""
         return b""
 
-    try:
-        replies, at_once = replies_to(sys.stdout.fileno())
-        # Redirect all printed text to stderr, so that it does not mix with the words.
-        os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
-    except OSError:
-        return read, None
+    replies, at_once = replies_to(sys.stdout.fileno())
+    # Redirect all printed text to stderr, so that it does not mix with the words.
+    os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
 
     def write(data: bytes) -> None:
         view = memoryview(data)
@@ -234,39 +239,12 @@ def replies_to(stdout: int) -> tuple[int, int]:
     return os.dup(stdout), WRITTEN_AT_ONCE
 
 
-def serve_hosts(
-    server: Server,
-    run: Run,
-    window: bool,
-    once: bool,
-    obey: Obey | None,
-    inspected: Replay | None,
-) -> None:
-    """Serve hosts until a signal, until the window is closed, or, with `once`, until a host leaves."""
-    if window or inspected is not None:
-        from ramtek_emu.host.server import HOST_SECONDS
-        from ramtek_emu.monitor.window import open_screen
-
-        # Fail before the address is printed.
-        open_screen()
-        announce(server)
-        serve_for = partial(server.serve_for, wait=HOST_SECONDS)
-        watch(server.session, run, obey, inspected, server.step, serve_for, lambda: server.busy)
-        return
-    announce(server)
-    while not run.ends and not (once and server.served):
-        if obey is not None:
-            obey()
-        server.step(STEP_SECONDS if obey is None else JOYSTICK_SECONDS)
-
-
-def announce(server: Server) -> None:
+def announce(address: str, host: str) -> None:
     """Print the address for hosts, with a warning if other machines can reach it."""
-    host = getattr(server, "host", "localhost")
     if host not in ("127.0.0.1", "localhost", "::1"):
         tell(
-            f"warning: whoever reaches {server.address} can draw on this display and read it back; "
+            f"warning: whoever reaches {address} can draw on this display and read it back; "
             "leave --host out to keep to this machine"
         )
-    click.echo(server.address)
+    click.echo(address)
     sys.stdout.flush()

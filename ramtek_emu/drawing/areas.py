@@ -1,146 +1,149 @@
-"""Areas: the connected pixels around one pixel, for FILL.
+"""Areas: windows that are filled, and the connected pixels around one pixel, for FILL.
 
 Lines are split into runs of open pixels, and runs of neighboring lines that touch are linked. The area is all
 runs that the links connect to the first run. So the size of the memory bounds the work, for any picture.
 
-A comb whose teeth are one pixel wide has the most runs: a quarter of a second on a display of 1280 x 1024.
-So the functions are generators that pause after MOST_PIXELS pixels or MOST_RUNS runs.
+The work is cut into bands of lines and parts of the runs, with a pause after each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Iterator
-from itertools import pairwise
+from collections.abc import Generator, Iterator
 from typing import Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Indices
+from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
+from ramtek_emu.memory.scan_orders import Point, Window
 
-MOST_PIXELS: Final = 1 << 19
-MOST_RUNS: Final = 1 << 16
-"""Limits: the pixels, and the runs, between two pauses of a few milliseconds."""
+MOST_AT_ONCE: Final = 1 << 17
+"""The number of pixels, or of runs, that an instruction draws or compares between two pauses.
 
-Links = tuple[Indices, Indices]
-"""Pairs of runs that touch: the indices of the upper runs, and of the lower runs."""
-Strip = tuple[slice, Dots]
-"""Some lines, and the (lines, elements) dots of an area on them."""
+Limit: a bound on the time between two pauses, 1 to 10 ms.
+"""
 
 
-def area(open_pixels: Dots, line: int, element: int) -> Generator[None, None, Iterator[Strip]]:
-    """Find the open pixels that are connected, up, down, left and right, to the pixel at (line, element).
+def bands(window: Window) -> Iterator[Window]:
+    """Cut a window into bands of whole lines with at most MOST_AT_ONCE pixels, or of one line."""
+    lines = max(1, MOST_AT_ONCE // max(1, window.width))
+    for top in range(window.top, window.bottom + 1, lines):
+        yield window._replace(top=top, bottom=min(top + lines - 1, window.bottom))
 
-    The generator yields None at each pause, and returns an iterator of strips from the top to the bottom.
-    """
-    if not open_pixels[line, element]:
-        return iter(())
-    lines, elements = open_pixels.shape
-    at_once = max(1, MOST_PIXELS // elements)
-    width = elements + 2
-    strips = []
-    for first in range(0, lines, at_once):
-        strips.append(runs_of(open_pixels[first : first + at_once], first * width))
+
+def fill_window(
+    frame_buffer: FrameBuffer, window: Window, word: int, enable: WriteEnable
+) -> Iterator[None] | None:
+    """Fill a window with a word; returns the pauses if it is large, None if it is filled."""
+    # Filling is quick, and a picture of 640 x 480 is erased often.
+    if window.width * window.height <= 4 * MOST_AT_ONCE:
+        frame_buffer.fill(window, word, enable)
+        return None
+    return _fill_in_bands(frame_buffer, window.intersection(frame_buffer.window), word, enable)
+
+
+def _fill_in_bands(
+    frame_buffer: FrameBuffer, window: Window, word: int, enable: WriteEnable
+) -> Iterator[None]:
+    for band in bands(window):
+        frame_buffer.fill(band, word, enable)
         yield
-    count = sum(len(starts) for starts, _ in strips)
-    starts = yield from joined((starts for starts, _ in strips), count)
-    ends = yield from joined((ends for _, ends in strips), count)
-    pairs = []
-    for part in parts(count):
-        pairs.append(links(starts, ends, width, part))
+
+
+def fill_area(
+    frame_buffer: FrameBuffer,
+    window: Window,
+    open_pixels: Dots,
+    start: Point,
+    word: int,
+    enable: WriteEnable,
+) -> Iterator[None]:
+    """Fill the open pixels that are connected, up, down, left and right, to `start`, and pause at times.
+
+    The window is within the memory and holds `start`; `open_pixels` are its (lines, elements).
+    """
+    line, element = start.line - window.top, start.element - window.left
+    if not open_pixels[line, element]:
+        return
+    width = window.width + 2
+    cut = [slice(band.top - window.top, band.bottom + 1 - window.top) for band in bands(window)]
+    found: list[tuple[Indices, Indices]] = []
+    pairs: list[tuple[Indices, Indices]] = []
+    count = seed = 0
+    above = np.zeros(0, np.intp), np.zeros(0, np.intp)
+    for band in cut:
+        # Add a closed column on either side, so that every run begins and ends within its line.
+        fenced = np.zeros((band.stop - band.start, width), np.int8)
+        fenced[:, 1:-1] = open_pixels[band]
+        edges = np.diff(fenced.reshape(-1))
+        starts, ends = (np.flatnonzero(edges == edge) + 1 + band.start * width for edge in (1, -1))
+        if band.start <= line < band.stop:
+            seed = count + int(np.searchsorted(starts, line * width + element + 1, side="right")) - 1
+        # Link the runs, those of the last line above the band too.
+        begin = count - len(above[0])
+        upper, lower = links(np.concatenate((above[0], starts)), np.concatenate((above[1], ends)), width)
+        pairs.append((upper + begin, lower + begin))
+        found.append((starts, ends))
+        count += len(starts)
+        last = np.searchsorted(starts, (band.stop - 1) * width)
+        above = starts[last:], ends[last:]
         yield
     labels = yield from connected(pairs, count)
-    own = labels[np.searchsorted(starts, line * width + element + 1, side="right") - 1]
-    return strips_of(starts, ends, labels == own, (lines, elements), at_once)
-
-
-def runs_of(open_pixels: Dots, place: int) -> tuple[Indices, Indices]:
-    """The starts and ends of the runs of some lines; the first line begins at `place`.
-
-    A closed column is added on either side, so that every run begins and ends within its line.
-    """
-    fenced = np.zeros((len(open_pixels), open_pixels.shape[1] + 2), np.int8)
-    fenced[:, 1:-1] = open_pixels
-    edges = np.diff(fenced.reshape(-1))
-    return np.flatnonzero(edges == 1) + place + 1, np.flatnonzero(edges == -1) + place + 1
-
-
-def strips_of(
-    starts: Indices, ends: Indices, chosen: Dots, shape: tuple[int, int], at_once: int
-) -> Iterator[Strip]:
-    """The pixels of the chosen runs of (lines, elements) pixels, `at_once` lines at a time."""
-    lines, elements = shape
-    width = elements + 2
-    tops = np.append(np.arange(0, lines, at_once), lines)
-    for (top, bottom), (first, last) in zip(
-        pairwise(tops.tolist()), pairwise(np.searchsorted(starts, tops * width).tolist()), strict=True
-    ):
-        # Measured: for large areas of few runs, repeating takes a twentieth of a sum along the lines.
-        runs = np.flatnonzero(chosen[first:last]) + first
-        cuts = np.zeros(2 * len(runs) + 2, np.intp)
-        cuts[1:-1:2], cuts[2:-1:2], cuts[-1] = starts[runs], ends[runs], bottom * width
-        cuts[0] = top * width
-        is_filled = np.zeros(2 * len(runs) + 1, np.bool_)
+    count = 0
+    for lines, band, (starts, ends) in zip(bands(window), cut, found, strict=True):
+        chosen = labels[count : count + len(starts)] == labels[seed]
+        count += len(starts)
+        # Measured: for large areas of few runs, repeating takes a twentieth of the time of a sum along lines.
+        runs = np.count_nonzero(chosen)
+        cuts = np.zeros(2 * runs + 2, np.intp)
+        cuts[1:-1:2], cuts[2::2] = starts[chosen] - band.start * width, ends[chosen] - band.start * width
+        cuts[-1] = (band.stop - band.start) * width
+        is_filled = np.zeros(2 * runs + 1, np.bool_)
         is_filled[1::2] = True
-        filled = np.repeat(is_filled, np.diff(cuts)).reshape(bottom - top, width)
-        yield slice(top, bottom), filled[:, 1:-1]
-
-
-def parts(count: int) -> Iterator[slice]:
-    """Slices of at most MOST_RUNS that cover `count` runs or links."""
-    return (slice(begin, min(begin + MOST_RUNS, count)) for begin in range(0, count, MOST_RUNS))
-
-
-def joined(pieces: Iterable[Indices], count: int) -> Generator[None, None, Indices]:
-    """Pieces with `count` items as a single array. It pauses, since the first use of memory takes long."""
-    whole = np.empty(count, np.intp)
-    place = 0
-    for piece in pieces:
-        whole[place : place + len(piece)] = piece
-        place += len(piece)
+        filled = np.repeat(is_filled, np.diff(cuts)).reshape(-1, width)[:, 1:-1]
+        frame_buffer.fill(lines, word, enable, filled)
         yield
-    return whole
 
 
-def links(starts: Indices, ends: Indices, width: int, part: slice) -> Links:
-    """The links of the runs of a part to runs of the next line."""
-    first = np.searchsorted(ends, starts[part] + width, side="right")
-    last = np.searchsorted(starts, ends[part] + width, side="left")
+def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]:
+    """The pairs of runs that touch: the indices of the upper runs and of the lower runs."""
+    first = np.searchsorted(ends, starts + width, side="right")
+    last = np.searchsorted(starts, ends + width, side="left")
     counts = np.maximum(last - first, 0)
-    upper = np.repeat(np.arange(part.start, part.stop), counts)
+    upper = np.repeat(np.arange(len(starts)), counts)
     lower = np.arange(len(upper)) - np.repeat(np.cumsum(counts) - counts - first, counts)
     return upper, lower
 
 
-def connected(pairs: list[Links], count: int) -> Generator[None, None, Indices]:
-    """Label `count` runs, by union-find: runs that links connect get equal labels.
+def connected(pairs: list[tuple[Indices, Indices]], count: int) -> Generator[None, None, Indices]:
+    """Label `count` runs, by union-find: runs that the pairs (upper, lower) connect get equal labels.
 
     The generator yields None at each pause, and returns the labels.
     """
-    labels = yield from joined((np.arange(part.start, part.stop) for part in parts(count)), count)
-    while True:
-        # Link the larger root to the smaller one.
-        before = yield from joined((labels[part] for part in parts(count)), count)
+    labels = np.empty(count, np.intp)
+    for first in range(0, count, MOST_AT_ONCE):
+        labels[first : first + MOST_AT_ONCE] = np.arange(first, min(first + MOST_AT_ONCE, count))
+        yield
+    while pairs:
+        # Link the larger label to the smaller one, then shorten every path to its root.
         for upper, lower in pairs:
-            upper, lower = before[upper], before[lower]
-            least = np.minimum(upper, lower)
-            np.minimum.at(labels, upper, least)
-            np.minimum.at(labels, lower, least)
+            above, below = labels[upper], labels[lower]
+            np.minimum.at(labels, np.maximum(above, below), np.minimum(above, below))
             yield
-        # Shorten every path to its root.
         is_short = False
         while not is_short:
             is_short = True
-            for part in parts(count):
-                shorter = labels[labels[part]]
-                is_short &= np.array_equal(shorter, labels[part])
-                labels[part] = shorter
+            for first in range(0, count, MOST_AT_ONCE):
+                part = labels[first : first + MOST_AT_ONCE]
+                shorter = labels[part]
+                is_short = is_short and bool((shorter == part).all())
+                part[...] = shorter
                 yield
         apart = []
         for upper, lower in pairs:
-            differ = labels[upper] != labels[lower]
-            if differ.any():
-                apart.append((upper[differ], lower[differ]))
+            different = labels[upper] != labels[lower]
+            if different.any():
+                apart.append((upper[different], lower[different]))
             yield
-        if not apart:
-            return labels
         pairs = apart
+    return labels

@@ -48,29 +48,22 @@ class Ink(NamedTuple):
         return (pattern >> bits & 1).astype(np.bool_)
 
 
-def write_linked(
-    frame_buffer: FrameBuffer, vertices: Numbers, ink: Ink, enable: WriteEnable
-) -> Iterator[int]:
-    """Draw lines from vertex to vertex of (n, 2) vertices, in slices as `write_lines` does.
-
-    Hardware: LONG REFLIB.C, an emulation (the texture continues from line to line of a call).
-    Assumed: it starts again with the next instruction; a vertex between two lines takes one bit.
-    """
-    return write_lines(frame_buffer, vertices[:-1], vertices[1:], ink, enable, runs_on=True)
-
-
 def write_lines(
     frame_buffer: FrameBuffer,
     starts: Numbers,
     ends: Numbers,
     ink: Ink,
     enable: WriteEnable,
-    runs_on: bool = False,
+    linked: bool = False,
 ) -> Iterator[int]:
     """Draw lines from the (n, 2) starts to the (n, 2) ends, in slices.
 
     After a slice the iterator yields how many lines are drawn; it draws the next slice when it is asked for
-    more. A few lines are drawn in a single step.
+    more. A few lines are drawn in a single step. With `linked`, each line starts where the line before ends.
+
+    Hardware: LONG REFLIB.C, an emulation (the texture continues from line to line of a call).
+    Assumed: it continues in linked lines alone, and starts again with the next instruction; a vertex between
+    two lines takes one bit.
     """
     inside = frame_buffer.window.intersection(enable.window)
     if inside.is_empty:
@@ -85,7 +78,7 @@ def write_lines(
         if ink.is_solid:
             frame_buffer.write_points(elements, lines, ink.word, enable)
         else:
-            ones = ink.is_one(numbers + before[which] if runs_on else numbers)
+            ones = ink.is_one(numbers + before[which] if linked else numbers)
             if ink.transparent:
                 frame_buffer.write_points(elements[ones], lines[ones], ink.word, enable)
             else:
@@ -199,9 +192,6 @@ def slices(counts: Numbers) -> Iterator[slice]:
     """
     done = counts.cumsum()
     row = before = 0
-    if len(counts) and done[-1] <= MOST_POINTS:
-        yield slice(0, len(counts))
-        return
     while row < len(counts):
         until = max(row + 1, int(np.searchsorted(done, before + MOST_POINTS, side="right")))
         yield slice(row, until)

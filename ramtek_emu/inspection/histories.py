@@ -142,7 +142,7 @@ def _noted(
     """The changes of a part of a memory that executed instructions touch."""
     before = memory.copy()
     for number in numbers:
-        display.processor.clear_replies()
+        display.processor.replies.clear()
         if not touched.any():
             yield None
             continue

@@ -7,6 +7,7 @@ mouse over its field is its joystick.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -26,17 +27,8 @@ from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.video.scan_out import turned
 from ramtek_emu.writing import PNG, write_numbered
 
-
-def inspect(session: Inspection, caption: str, ends: Callable[[], bool] = lambda: False) -> None:
-    """Open a window of an inspection until it is closed, or until `ends()` is true; NoScreenError."""
-    inspector = Inspector(session, caption)
-    monitor = inspector.monitor
-    monitor.open()
-    try:
-        while monitor.is_open and not ends():
-            monitor.step(0 if sessions.is_busy(inspector.session) else TICK_MILLISECONDS)
-    finally:
-        monitor.close()
+Hint = Callable[[float], str]
+"""A function that returns a message for people at a time of `time.monotonic`, or ""."""
 
 
 class Inspector:
@@ -72,6 +64,18 @@ class Inspector:
     def _do(self, action: Callable[..., Inspection], *values: object) -> None:
         """Show the inspection after an action."""
         self.page.session = action(self.page.session, *values)
+
+    def run(self, hint: Hint = lambda _: "", ends: Callable[[], bool] = lambda: False) -> None:
+        """Keep the window open until it is closed, or until `ends()` is true; NoScreenError."""
+        monitor = self.monitor
+        monitor.open()
+        try:
+            while monitor.is_open and not ends():
+                monitor.step(0 if sessions.is_busy(self.session) else TICK_MILLISECONDS)
+                if message := hint(time.monotonic()):
+                    monitor.tell(message)
+        finally:
+            monitor.close()
 
     def press(self, key: Key) -> bool:
         """Handle a key; returns whether it means something here."""

@@ -98,7 +98,7 @@ class Replay:
             touched = display.frame_buffer.touched = np.zeros(display.words.shape, np.bool_)
             for step in self.steps(display, number, len(self.stream)):
                 number = step
-                display.processor.clear_replies()
+                display.processor.replies.clear()
                 if thread_time() >= due:
                     break
                 yield
@@ -178,7 +178,7 @@ class Replay:
     def _run(self, display: Ramtek9300, after: int, until: int) -> None:
         """Execute instructions, and drop their replies."""
         display.send(self.stream.words_between(after, until))
-        display.processor.clear_replies()
+        display.processor.replies.clear()
 
     def state_before(self, number: int) -> State:
         """The last state that was kept before an instruction, or after it exactly."""

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.host.server import HOST_SECONDS, HostSession, Record
+from ramtek_emu.host.server import HOST_SECONDS, Record, Server
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.memory.cursors import Cursors
@@ -42,37 +42,30 @@ def recording_into(replay: Replay, also: Record | None = None) -> Record:
 class RunningHost:
     """The host of a running display, and the replay that its session records into."""
 
-    def __init__(
-        self,
-        session: HostSession,
-        replay: Replay,
-        step: Callable[[float], bool],
-        is_connected: Callable[[], bool] = lambda: False,
-        obey: Callable[[], object] = lambda: None,
-    ) -> None:
-        """Serve the host of a session.
-
-        `step` executes a piece of the host's words, and waits up to so many seconds for words. It returns
-        whether it has done anything. `is_connected` says whether a host may send words. `obey` moves the
-        joystick or presses RESET if lines of text ask for it.
-        """
-        self.display, self.replay, self.is_connected = session.display, replay, is_connected
-        self._session, self._step, self._obey = session, step, obey
+    def __init__(self, server: Server, replay: Replay, obey: Callable[[], object] = lambda: None) -> None:
+        """Serve the hosts of a server; `obey` moves the joystick or presses RESET if lines ask for it."""
+        self.display, self.replay = server.session.display, replay
+        self._server, self._session, self._obey = server, server.session, obey
         self._cursors = cursor_states(self.display.cursors)
         """The cursors and switches after the last instruction."""
         self._has_moved = False
         """Whether the cursors have moved since the last state, which no instruction repeats."""
 
+    @property
+    def is_connected(self) -> bool:
+        """Whether a host is connected, so that its words are worth waiting for."""
+        return self._server.busy
+
     def serve(self, is_paused: bool) -> None:
         """Execute the host's words for some milliseconds; if the host is paused, only send its replies."""
-        self._session.allowed = 0 if is_paused else None
+        self._session.is_stopped = is_paused
         self._obey()
         # RESET also hides the cursors, which the recorded instruction does not.
         self._has_moved |= cursor_states(self.display.cursors) != self._cursors
         self._note()
         end = time.monotonic() + PIECE_SECONDS
-        wait = HOST_SECONDS if not is_paused and self.is_connected() else 0.0
-        while self._step(wait) and not is_paused and time.monotonic() < end:
+        wait = HOST_SECONDS if not is_paused and self.is_connected else 0.0
+        while self._server.step(wait) and not is_paused and time.monotonic() < end:
             self._note()
             wait = 0.0
         self._note()

@@ -106,7 +106,7 @@ def display_of(session: Inspection) -> Ramtek9300:
 
 def is_busy(session: Inspection) -> bool:
     """Whether a tick has work to do, or waits for a host itself."""
-    if session.is_following and session.host is not None and session.host.is_connected():
+    if session.is_following and session.host is not None and session.host.is_connected:
         return True
     return session.work is not None or session.number != session.target or is_preparing(session)
 

@@ -34,7 +34,6 @@ class FrameBuffer:
     """The picture memory: (lines, elements) words."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
-        self.planes = configuration.planes
         self.window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
         self.written = 0
         """The number of words written since power-on; it never decreases."""
@@ -45,10 +44,6 @@ class FrameBuffer:
         self.words.flags.writeable = False
         self.touched: Dots | None = None
         """(lines, elements) dots that writes make true, also where words stay the same; None for no dots."""
-
-    def __repr__(self) -> str:
-        lines, elements = self._words.shape
-        return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
 
     def state(self) -> dict[str, Any]:
         """The words, (lines, elements) uint16."""
@@ -79,9 +74,17 @@ class FrameBuffer:
         With `dots`, only words whose dot is true are written.
         """
         along, runs = order.inner_and_outer(window)
-        if not along * runs:
+        size = along * runs
+        if not size:
             return start
         inner, outer = order.entry(window, start)
+        turns = len(words) // size - 1
+        if turns > 0 and dots is None and min(inner, outer) >= 0:
+            # Each turn around the window overwrites the turn before: count them all, and write the last.
+            seen = window.intersection(self.window).intersection(enable.window)
+            if enable.mask & self._every_plane:
+                self.written += turns * seen.width * seen.height
+            words = words[turns * size :]
         count, rest = divmod(len(words), along)
         if dots is None and inner == rest == 0 and 0 <= outer < outer + count <= runs:
             # The common case: whole lines of the window, without going around it.
@@ -89,12 +92,10 @@ class FrameBuffer:
             entered = order.stepped(corner, 0, outer)
             self.write_block(entered, order, words.reshape(count, along), enable)
             return order.stepped(corner, 0, (outer + count) % runs)
-        if len(words) <= along * runs:
-            for block in blocks(window, order, start, len(words)):
-                part = slice(block.first, block.first + block.inner * block.outer)
-                shape = block.outer, block.inner
+        if len(words) < 2 * size:
+            for point, shape, part in blocks(window, order, start, len(words)):
                 chosen = None if dots is None else dots[part].reshape(shape)
-                self.write_block(block.start, order, words[part].reshape(shape), enable, chosen)
+                self.write_block(point, order, words[part].reshape(shape), enable, chosen)
         else:
             elements, lines = order.places(window, start, len(words))
             written = slice(None) if dots is None else dots
@@ -104,20 +105,21 @@ class FrameBuffer:
     def read_scan(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
         """`count` words along the scan of a window from `start` on, and the point after the last word."""
         size = window.width * window.height
-        words = np.zeros(count, np.uint16)
-        if size and count > size:
+        around = size > 0 and min(order.entry(window, start)) >= 0
+        words = np.zeros(min(count, size) if around else count, np.uint16)
+        if size and len(words) > size:
             elements, lines = order.places(window, start, count)
             inside = inside_of(self.window, elements, lines)
             words[inside] = self._words[lines[inside], elements[inside]]
         elif size:
-            for block in blocks(window, order, start, count):
-                out = words[block.first : block.first + block.inner * block.outer]
-                place = order.block_window(block.start, block.inner, block.outer)
+            for point, shape, part in blocks(window, order, start, len(words)):
+                place = order.block_window(point, shape[1], shape[0])
                 seen = place.intersection(self.window)
                 if not seen.is_empty:
                     memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
-                    shaped = out.reshape(block.outer, block.inner)
-                    shaped[part_of(place, seen, order)] = order.oriented(memory)
+                    words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
+        # From a start within the window on, the words repeat.
+        words = np.resize(words, count) if around else words
         return words, order.after(window, start, count) if size else start
 
     def write_block(

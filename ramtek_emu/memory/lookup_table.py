@@ -44,10 +44,6 @@ class LookupTable:
         """The entries as 0x00RRGGBB, (entries,) uint32; a read-only view that stays current."""
         self.packed.flags.writeable = False
 
-    def __repr__(self) -> str:
-        format = self.entry_format.name
-        return f"LookupTable({self.size} entries, {format}, {self.written} words written)"
-
     def state(self) -> dict[str, Any]:
         """The entries as 0x00RRGGBB, (entries,) uint32, and the address counter."""
         return {"entries": self._packed.copy(), "table_address": self.address}

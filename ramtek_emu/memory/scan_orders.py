@@ -166,15 +166,6 @@ SCAN_ORDERS: Final = (
 )
 
 
-class ScanBlock(NamedTuple):
-    """Consecutive words that fill a rectangle: the first point, the sizes, the index of the first word."""
-
-    start: Point
-    inner: int
-    outer: int
-    first: int
-
-
 def paired_parts(
     window: Window, order: ScanOrder, start: Point, count: int
 ) -> Iterator[tuple[Window, Point, int]]:
@@ -194,8 +185,13 @@ def paired_parts(
         yield next_window, order.after(first_window, begin, first), count - first
 
 
-def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[ScanBlock]:
-    """Yields the rectangles that `count` words from `start` on fill, at most three for each time around."""
+def blocks(
+    window: Window, order: ScanOrder, start: Point, count: int
+) -> Iterator[tuple[Point, tuple[int, int], slice]]:
+    """The rectangles that `count` words from `start` on fill, at most three for each time around.
+
+    Yields the first point of each, its (outer, inner) shape, and the slice of its words.
+    """
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
     inner, outer = order.entry(window, start)
@@ -203,12 +199,10 @@ def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterat
     while done < count:
         left = count - done
         point = order.stepped(corner, inner, outer)
-        if inner or left < along:
-            block = ScanBlock(point, min(along - inner, left), 1, done)
-        else:
-            block = ScanBlock(point, along, min(left // along, runs - outer), done)
-        yield block
-        done += block.inner * block.outer
-        inner, outer = 0, outer + block.outer
+        is_whole = inner == 0 and left >= along
+        shape = (min(left // along, runs - outer), along) if is_whole else (1, min(along - inner, left))
+        yield point, shape, slice(done, done + shape[0] * shape[1])
+        done += shape[0] * shape[1]
+        inner, outer = 0, outer + shape[0]
         if outer == runs:
             outer = 0

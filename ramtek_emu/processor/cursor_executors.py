@@ -24,9 +24,9 @@ SHAPE_BYTES_PER_ROW: Final = 4
 
 def has_cursor(processor: Processor, instruction: Instruction) -> bool:
     """Whether the cursor of the instruction exists; if not, the illegal-instruction bit is set."""
-    if instruction.low_byte in processor.cursors:
+    if instruction.low_byte < len(processor.cursors.all):
         return True
-    processor.flag_illegal()
+    processor.is_illegal = True
     return False
 
 
@@ -36,19 +36,12 @@ def element_bits(processor: Processor) -> int:
 
 
 def write_cursor(processor: Processor, instruction: Instruction) -> None:
-    """Place a cursor in screen coordinates."""
+    """Place a cursor in screen coordinates, or by WCSP in pixel coordinates."""
     if has_cursor(processor, instruction):
         (element,), (line,) = instruction.operands.values()
         place = element & element_bits(processor), line & LINE_BITS
-        processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
-
-
-def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
-    """Place a cursor in pixel coordinates."""
-    if has_cursor(processor, instruction):
-        (element,), (line,) = instruction.operands.values()
-        pixel = element & element_bits(processor), line & LINE_BITS
-        place = screen_at(processor.parameters, processor.configuration, *pixel)
+        if instruction.format.name == "WCSP":
+            place = screen_at(processor.parameters, processor.configuration, *place)
         processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
 
 
@@ -60,21 +53,13 @@ def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
 
 
 def read_cursor(processor: Processor, instruction: Instruction) -> None:
-    """Reply the place of a cursor in screen coordinates, with its state and the switches."""
+    """Reply the place of a cursor in screen coordinates, or by RCSP in pixel coordinates, with its state."""
     if not has_cursor(processor, instruction):
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
-    state = processor.cursors.read_state(instruction.low_byte)
-    words = cursor.element & element_bits(processor), cursor.line & LINE_BITS | state & ~LINE_BITS
-    processor.reply(np.array(words, np.uint16))
-
-
-def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
-    """Reply the place of a cursor in pixel coordinates, with its state and the switches."""
-    if not has_cursor(processor, instruction):
-        return processor.reply(np.zeros(2, np.uint16))
-    cursor = processor.cursors[instruction.low_byte]
-    element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, cursor.line)
+    element, line = cursor.element & element_bits(processor), cursor.line
+    if instruction.format.name == "RCSP":
+        element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, line)
     state = processor.cursors.read_state(instruction.low_byte)
     processor.reply(np.array((element, line & LINE_BITS | state & ~LINE_BITS), np.uint16))
 
@@ -103,10 +88,10 @@ def connect_device(processor: Processor, instruction: Instruction) -> None:
 
 EXECUTORS: Final[Executors] = {
     "WCSS": write_cursor,
-    "WCSP": write_cursor_at_pixel,
+    "WCSP": write_cursor,
     "WCSG": write_global_cursor,
     "RCSS": read_cursor,
-    "RCSP": read_cursor_at_pixel,
+    "RCSP": read_cursor,
     "RCSG": read_global_cursor,
     "LCF": load_cursor_shape,
     "DDCC": connect_device,

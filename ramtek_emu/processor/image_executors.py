@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.drawing.areas import area
+from ramtek_emu.drawing import areas
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import register
@@ -19,19 +19,18 @@ from ramtek_emu.memory.scan_orders import Point, Window, paired_parts
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
-def erase(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag)."""
-    parameters = processor.parameters
-    _, background = processor.colors(instruction)
-    processor.frame_buffer.fill(parameters.window, background, parameters.enable)
+def erase(processor: Processor, instruction: Instruction) -> Pauses | None:
+    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag).
 
-
-def erase_everything(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: as ERS, but it fills the whole memory and ignores the windows: the B stands for bulk."""
+    Assumed: BERS fills the whole memory and ignores the windows: the B stands for bulk.
+    """
     parameters = processor.parameters
+    window, enable = parameters.window, parameters.enable
+    if instruction.format.name == "BERS":
+        window = parameters.whole_window
+        enable = enable._replace(window=window)
     _, background = processor.colors(instruction)
-    enable = parameters.enable._replace(window=parameters.whole_window)
-    processor.frame_buffer.fill(parameters.whole_window, background, enable)
+    return areas.fill_window(processor.frame_buffer, window, background, enable)
 
 
 def write_image(processor: Processor, instruction: Instruction) -> None:
@@ -83,10 +82,6 @@ def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Poin
     return iter([(parameters.window, parameters.start, count)])
 
 
-RASTER_BYTES: Final = 1 << 12
-"""The bytes of a raster that are written at once. Limit: a bound on the time between pauses, 1 to 4 ms."""
-
-
 def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     """Write one bit a pixel: foreground for 1, background for 0.
 
@@ -100,10 +95,13 @@ def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     data = np.frombuffer(instruction.data_bytes(), np.uint8)
     foreground, background = processor.colors(instruction)
     words = np.array((background, foreground), np.uint16)
-    for first in range(0, len(data), RASTER_BYTES):
+    # Bits that go around the window take many times as long.
+    goes_around = 8 * len(data) > parameters.window.width * parameters.window.height
+    at_once = max(1, areas.MOST_AT_ONCE // (32 if goes_around else 2))
+    for first in range(0, len(data), at_once):
         if first:
             yield
-        bits = np.unpackbits(data[first : first + RASTER_BYTES])
+        bits = np.unpackbits(data[first : first + at_once])
         dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
         parameters.start = processor.frame_buffer.write_scan(
             parameters.window, parameters.order, parameters.start, words[bits], parameters.enable, dots
@@ -136,22 +134,20 @@ def fill(processor: Processor, instruction: Instruction) -> Pauses:
     inside = parameters.write_window.intersection(frame_buffer.window)
     if not inside.holds(parameters.start):
         return
-    mask = np.uint16(parameters.read_mask)
-    part = frame_buffer.words[inside.top : inside.bottom + 1, inside.left : inside.right + 1] & mask
-    line, element = parameters.start.line - inside.top, parameters.start.element - inside.left
+    mask, words = np.uint16(parameters.read_mask), frame_buffer.words
     foreground, _ = processor.colors(instruction)
-    if (instruction.length or 0) >= 2 and instruction.data[0]:
-        open_pixels = part == part[line, element]
-    else:
-        open_pixels = part != np.uint16(foreground & parameters.whole_word) & mask
-    for lines, dots in (yield from area(open_pixels, line, element)):
-        strip = inside._replace(top=inside.top + lines.start, bottom=inside.top + lines.stop - 1)
-        frame_buffer.fill(strip, foreground, parameters.enable, dots)
+    by_seed = (instruction.length or 0) >= 2 and bool(instruction.data[0])
+    seed = words[parameters.start.line, parameters.start.element]
+    word = (seed if by_seed else np.uint16(foreground & parameters.whole_word)) & mask
+    compare = np.equal if by_seed else np.not_equal
+    open_pixels = np.empty((inside.height, inside.width), np.bool_)
+    for band in areas.bands(inside):
+        part = words[band.top : band.bottom + 1, inside.left : inside.right + 1] & mask
+        compare(part, word, out=open_pixels[band.top - inside.top : band.bottom + 1 - inside.top])
         yield
-
-
-MOST_COPIED: Final = 1 << 20
-"""The number of words that are copied at once. Limit: a bound on the time between two pauses, 1 to 8 ms."""
+    yield from areas.fill_area(
+        frame_buffer, inside, open_pixels, parameters.start, foreground, parameters.enable
+    )
 
 
 def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
@@ -172,7 +168,7 @@ def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
     first, origin = order.corner(inside), order.corner(parameters.window)
     place = Point(corner.element + first.element - origin.element, corner.line + first.line - origin.line)
     along, runs = order.inner_and_outer(inside)
-    at_once = max(1, MOST_COPIED // along)
+    at_once = max(1, areas.MOST_AT_ONCE // along)
     blocks = []
     for run in range(0, runs, at_once):
         count = along * min(at_once, runs - run)
@@ -206,7 +202,7 @@ def read_lookup_table(processor: Processor, instruction: Instruction) -> None:
 
 EXECUTORS: Final[Executors] = {
     "ERS": erase,
-    "BERS": erase_everything,
+    "BERS": erase,
     "WI": write_image,
     "RI": read_image,
     "WR": write_raster,

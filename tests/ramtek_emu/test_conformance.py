@@ -96,10 +96,22 @@ def test_the_suite_runs_on_an_emulator_on_a_pipe() -> None:
     ]
 
 
-def test_an_emulator_that_hangs_is_ended_and_fails() -> None:
-    hangs = (sys.executable, "-c", "import time; time.sleep(600)")
-    assert failure_on(POINT, hangs, 0.5) == "the emulator did not end in 0.5 s"
-    assert "COMMAND must be a program, not 'nowhere'" in run("--", "nowhere", code=2)
+def test_an_emulator_that_hangs_is_ended_and_fails(tmp_path: Path) -> None:
+    # The last emulator takes the words at once, but not the bytes one by one.
+    long = replace(POINT, cut="every", ask="0700*200000", replies="")
+    taken = f"p = {str(tmp_path / 'taken')!r}; os.path.exists(p) or os._exit(open(p, 'x').close() or 0)"
+    for claim, code in ((POINT, "os.close(0)"), (POINT, "os.close(1)"), (long, taken)):
+        hangs = (sys.executable, "-c", f"import os, time; {code}; time.sleep(600)")
+        assert failure_on(claim, hangs, 0.5) == "the emulator did not end in 0.5 s"
+
+
+def test_what_is_no_program_and_no_key_is_refused(tmp_path: Path) -> None:
+    script = tmp_path / "script"
+    script.write_text("no program")
+    for mode in (0o644, 0o755):
+        script.chmod(mode)
+        assert f"COMMAND must be a program, not '{script}' (" in run("--", str(script), code=2)
+    assert "not 'nowhere' (No such file or directory); give" in run("--", "nowhere", code=2)
     assert "--only must be the key of a claim, not NO SUCH KEY" in run("--only", "NO SUCH KEY", code=2)
 
 

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -78,15 +77,14 @@ def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
 ) -> None:
     played = play(frames, "--film", name, *options, "-o", "a.png")
     assert played.exit_code == 0
-    count = f"{len(expected)} frame{'s' * (len(expected) > 1)}"
-    assert played.stderr.splitlines() == [f"wrote {name}, {count}", "wrote a.png"]
+    assert played.stderr.splitlines() == [f"wrote {name}", "wrote a.png"]
     assert reds(name) == expected
     assert np.array_equal(decoded(name)[-1], field_of(Path("a.png")))
 
 
 def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(frames: str) -> None:
     assert play(frames, "--configuration", "PRINCETON_9300", "--snapshot", "a.png").exit_code == 0
-    Path("nop.ramtek").write_bytes(stream(instructions.no_operation()))
+    Path("nop.ramtek").write_bytes(stream([0x0700]))
     options = ("--start", "a.png", "--film", "b.apng", "--fps", 5, "--once")
     assert play("nop.ramtek", *options, "--record", "b.ramtek", "--snapshot", "b.png").exit_code == 0
     assert np.array_equal(decoded("b.apng")[0], read_snapshot("b.png").field())
@@ -96,26 +94,11 @@ def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(fr
         assert film.info["loop"] == 1
 
 
-def test_a_film_that_is_too_long_has_the_last_frame_and_says_so(
-    frames: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("ramtek_emu.films.MOST_FIELDS", 3)
-    played = play(frames, "--film", "a.webp")
-    assert played.stderr.splitlines() == [
-        "a film such as a.webp must have at most 3 frames, not more: it has the first 2 and the last; make"
-        " fewer with --every",
-        "wrote a.webp, 3 frames",
-    ]
-    assert reds("a.webp") == [20, 40, 100]
-
-
 REFUSED: list[tuple[list[object], int, str]] = [
     (["--film", "a.gif"], 73, "a film must end in"),
-    (["--film", "{number:02}.png", "--force", "--record", "./001.png"], 2, "a picture of {number:02}.png"),
     (["--film", "frames.apng"], 73, "which exists"),
-    (["--film", "a.webp", "--fps", 101], 2, "fields per second"),
+    (["--film", "a.webp", "--fps", 101], 2, "101.0 is not in the range 0.1<=x<=100"),
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
-    (["--film", "a.webp", "--window"], 2, "leave it out, or press F3 in the window"),
     (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second is for the window"),
     (["--film", "a.webp", "--record", "a.webp"], 2, "two outputs must be two files"),
     (["-o", "a.png", "--every", 3], 2, "--every is for a film; add --film FILE, or leave it out"),
@@ -175,14 +158,14 @@ def test_of_a_stream_that_cannot_be_read_to_its_end_a_window_shows_the_beginning
 
     monkeypatch.setattr("ramtek_emu.commands.play.os.read", read)
     monkeypatch.setattr("ramtek_emu.commands.play.show", show)
-    failed = play(frames, "--window", "-o", "a.png")
+    failed = play(frames, "--record", "a.ramtek")
     assert failed.exit_code == MissingInputError.exit_code
     assert "ramtek: a stream must be readable to its end" in failed.stderr
-    assert field_of(Path("a.png"))[0, 0, 0] == 100
+    assert Path("a.ramtek").read_bytes() == stream(FRAMES)
     # Nothing is left of a film.
     pieces.append(stream(FRAMES))
     assert isinstance(play(frames, "--film", "a.apng", "-o", "b.png").exception, MissingInputError)
-    assert sorted(path.name for path in Path().iterdir()) == ["a.png", frames]
+    assert sorted(path.name for path in Path().iterdir()) == ["a.ramtek", frames]
 
 
 def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
@@ -195,7 +178,7 @@ def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
         assert process.wait(60) in (-signal.SIGINT, 128 + signal.SIGINT)
         assert process.stderr is not None
         messages = process.stderr.read()
-    assert re.search(rb"wrote .*\{number\}\.png, [23] frames", messages)
+    assert b"{number}.png\n" in messages
     assert b"a signal ended the stream within an instruction: its 2 words were dropped" in messages
     numbers = sorted(int(path.stem) for path in tmp_path.glob("[0-9]*.png"))
     assert numbers in ([1, 2], [1, 2, 3])

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from ramtek_emu import Configuration, Ramtek9300
-from ramtek_emu.host.server import HostSession
+from ramtek_emu.host.server import HostSession, Server
 from ramtek_emu.inspection import session as module
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost, recording_into, replay_from
@@ -67,8 +67,9 @@ class Served:
 
     def __init__(self, display: Ramtek9300) -> None:
         replay = replay_from(display)
-        self.host_session = HostSession(display, recording_into(replay))
-        self.host = RunningHost(self.host_session, replay, self.step)
+        self.session = self.host_session = HostSession(display, recording_into(replay))
+        self.busy = False
+        self.host = RunningHost(cast(Server, self), replay)
         self.inspection = Steps(inspection_of(replay, self.host))
         self.replies = b""
         self._waiting: Iterator[bytes] = iter(())

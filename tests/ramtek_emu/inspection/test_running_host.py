@@ -31,7 +31,7 @@ def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyP
     display = Ramtek9300()
     replay = replay_from(display)
     with TcpServer(display, idle_seconds=5, record=recording_into(replay)) as server:
-        host = RunningHost(server.session, replay, server.step, lambda: server.busy)
+        host = RunningHost(server, replay)
         session = Steps(inspection_of(replay, host))
         port = TcpPort(server.address)
         port.send(instructions.read_cursor(0))

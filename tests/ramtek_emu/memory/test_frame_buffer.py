@@ -1,16 +1,12 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window
-from tests.ramtek_emu.strategies import SMALL
-
-seeds = st.integers(0, 2**32 - 1)
-rasters = seeds.map(lambda seed: np.random.default_rng(seed).integers(0, 1024, (9, 13), np.uint16))
-"""Words of a small memory."""
+from tests.ramtek_emu.strategies import SMALL, scan_codes, windows
 
 
 def test_written_counts_the_words_that_reached_the_memory() -> None:
@@ -26,10 +22,23 @@ def test_written_counts_the_words_that_reached_the_memory() -> None:
     assert [*counts, buffer.written] == [2, 2, 4, 5, 7]
 
 
-def test_the_words_of_a_display_are_read_only_and_stay_current() -> None:
-    buffer = FrameBuffer(SMALL)
-    words = buffer.words
-    buffer.fill(buffer.window, 3)
-    assert (words == 3).all()
-    with pytest.raises(ValueError, match="read-only"):
-        words[0, 0] = 1
+@given(
+    windows(), scan_codes, st.integers(0, 99), windows(), st.tuples(st.integers(-3, 9), st.integers(-3, 9))
+)
+def test_words_around_a_window_are_written_and_read_as_single_words_are(
+    window: Window, code: int, count: int, write_window: Window, start: tuple[int, int]
+) -> None:
+    order, enable = SCAN_ORDERS[code], WriteEnable(0x3F5, write_window)
+    whole, single = FrameBuffer(SMALL), FrameBuffer(SMALL)
+    words = np.arange(1, count + 1, dtype=np.uint16)
+    whole.write_scan(window, order, Point(*start), words, enable)
+    place = Point(*start)
+    for word in words:
+        place = single.write_scan(window, order, place, np.array([word]), enable)
+    assert (whole.words == single.words).all()
+    assert whole.written == single.written
+    read, place = [], Point(*start)
+    for _ in range(count):
+        part, place = single.read_scan(window, order, place, 1)
+        read += part.tolist()
+    assert whole.read_scan(window, order, Point(*start), count)[0].tolist() == read

@@ -89,7 +89,7 @@ def test_the_window_refreshes_only_when_something_was_written(monitor: Monitor) 
     load(monitor, 200)
     monitor.step()
     assert monitor.refreshed == before + 1
-    monitor.display.send(instructions.no_operation())
+    monitor.display.send(np.array([0x0700], np.uint16))
     monitor.step()
     assert monitor.refreshed == before + 1
 

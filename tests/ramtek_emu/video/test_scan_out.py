@@ -2,7 +2,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -150,18 +149,17 @@ LOAD = "load", (3, 0, 2), True
 
 
 # Words written between two loads show the second load, and a view that came back shows the next load.
-@example({}, 1, steps(("write words", ((2, 3), 300), True), LOAD, ("write words", ((7, 3), 300), True), LOAD))
+@example({}, steps(("write words", ((2, 3), 300), True), LOAD, ("write words", ((7, 3), 300), True), LOAD))
 @example(
     {},
-    1,
     steps(
         ("blink", True, True), ("origin", (0, 4), False), ("scan out another", None, False),
         ("origin", (0, 0), False), LOAD,
     ),
 )  # fmt: skip
-@given(st.sampled_from(KINDS), st.integers(1, 4), STEPS)
+@given(st.sampled_from(KINDS), STEPS)
 def test_an_updated_field_equals_a_whole_scan_out(
-    kind: dict[str, Any], strip: int, steps: list[tuple[tuple[str, Any], bool]]
+    kind: dict[str, Any], steps: list[tuple[tuple[str, Any], bool]]
 ) -> None:
     configuration = replace(SMALL, **kind)
     display = Ramtek9300(configuration)
@@ -170,25 +168,24 @@ def test_an_updated_field_equals_a_whole_scan_out(
     display.send(instructions.write_image(words & configuration.largest_word))
     scan_out, last = display.scan_out, None
     updated, fresh = (np.zeros((scan_out.lines, scan_out.elements), np.uint32) for _ in range(2))
-    with patch("ramtek_emu.video.scan_out.STRIP", strip):
-        for (name, value), is_scanned_out in steps:
-            if name == "draw on it":
-                updated[value % len(updated)], last = 0xABCDEF, None
-            elif name == "scan out another":
-                scan_out.scan_out_into(fresh)
-            else:
-                do(display, name, value)
-            if is_scanned_out:
-                outside = np.ones(len(updated), np.bool_)
-                for first, end in scan_out.lines_changed_since(last):
-                    outside[first:end] = False
-                before = updated[outside]
-                last = scan_out.scan_out_changes_into(updated, last)
-                assert last == scan_out.stamp
-                fresh[...] = 0x123456
-                scan_out.scan_out_into(fresh)
-                assert (updated == fresh).all()
-                assert (updated[outside] == before).all()
+    for (name, value), is_scanned_out in steps:
+        if name == "draw on it":
+            updated[value % len(updated)], last = 0xABCDEF, None
+        elif name == "scan out another":
+            scan_out.scan_out_into(fresh)
+        else:
+            do(display, name, value)
+        if is_scanned_out:
+            outside = np.ones(len(updated), np.bool_)
+            for first, end in scan_out.lines_changed_since(last):
+                outside[first:end] = False
+            before = updated[outside]
+            last = scan_out.scan_out_changes_into(updated, last)
+            assert last == scan_out.stamp
+            fresh[...] = 0x123456
+            scan_out.scan_out_into(fresh)
+            assert (updated == fresh).all()
+            assert (updated[outside] == before).all()
 
 
 def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None:
@@ -379,8 +376,7 @@ def test_a_mark_is_the_shape_in_black_or_white_on_its_lines(element: int, line: 
 def test_the_lines_that_show_a_run_of_entries_are_found(seed: int, first: int, count: int) -> None:
     raster = np.random.default_rng(seed).integers(0, 1024, (60, 5), np.uint16)
     end = min(first + count, 1024)
-    with patch("ramtek_emu.video.scan_out.STRIP", 7):
-        top, bottom = lines_with(raster, first, end)
+    top, bottom = lines_with(raster, first, end)
     showing = [line for line, words in enumerate(raster.tolist()) if any(first <= w < end for w in words)]
     assert (top, bottom) == ((showing[0], showing[-1] + 1) if showing else (0, 0))
 
