@@ -164,9 +164,7 @@ def refuse_range(numbers: tuple[int, int], at: int | None, output: str | None) -
         raise click.UsageError("a stream must be asked for --at or --range, not both; ask twice")
     first, last = numbers
     if not 1 <= first <= last:
-        raise click.UsageError(
-            f"a range must begin at instruction 1 or later and not end before, not {first}..{last}; give A..B"
-        )
+        raise click.UsageError(f"a range must be A..B with 1 <= A <= B, not {first}..{last}; correct it")
 
 
 def refuse_outside(thing: str, value: int | None, most: int, place: str = "") -> None:

@@ -68,9 +68,9 @@ REFUSED = (
     (
         "inspect - --range 3..2 -o a",
         2,
-        "Error: a range must begin at instruction 1 or later and not end before",
+        "Error: a range must be A..B with 1 <= A <= B, not 3..2; correct it",
     ),
-    ("inspect - --range 0..0 -o a", 2, "Error: a range must begin at instruction 1 or later"),
+    ("inspect - --range 0..0 -o a", 2, "Error: a range must be A..B with 1 <= A <= B, not 0..0"),
     ("inspect - --range 1..1 --at 1 -o a", 2, "Error: a stream must be asked for --at or --range, not both"),
     ("inspect empty --at 1", 2, "Error: an instruction must be 0 to 0, not 1 (empty)"),
     ("serve", 2, "Error: a display must be served on one of --port, --unix and --stdio; give one of them"),
