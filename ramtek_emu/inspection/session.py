@@ -30,8 +30,6 @@ from ramtek_emu.video.view import pixel_at
 
 AT_ONCE: Final = 10
 """So many instructions are executed at once, even if no states are prepared there."""
-MOST_TYPED: Final = 60
-"""The most characters of a text that is typed."""
 PAUSED: Final = "paused: the host waits"
 PARAMETERS: Final = (
     "mask", "foreground", "background", "start", "window", "scan_order", "dimensions", "spacing", "texture",
@@ -266,7 +264,7 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
 
 def ask(session: Inspection, typed: str = "") -> Inspection:
     """Begin, or go on, to type an instruction's number or a text of the listing."""
-    return replace(session, typed=typed[:MOST_TYPED], message="")
+    return replace(session, typed=typed, message="")
 
 
 def enter(session: Inspection, back: bool = False) -> Inspection:
