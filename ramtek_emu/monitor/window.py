@@ -274,9 +274,10 @@ class Monitor:
 
         Raises OutputError or WriteError.
         """
+        from ramtek_emu.films import FILM
         from ramtek_emu.writing import write_numbered
 
-        path = write_numbered(film.end(time.monotonic()), folder, self.file_name, ".apng")
+        path = write_numbered(film.end(time.monotonic()), folder, self.file_name, FILM)
         self._film = None
         return f"saved {path}, {film.fields:,} {'field' if film.fields == 1 else 'fields'}"
 
