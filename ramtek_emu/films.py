@@ -1,20 +1,15 @@
-"""Films of fields, written whole or not at all.
+"""Films of fields, lossless and written whole or not at all: animated WebP, or a numbered PNG for each field.
 
-| suffix | format | colors |
-|---|---|---|
-| .webp | animated WebP | lossless |
-| .apng | animated PNG | lossless |
-| {number:04}.png | a numbered PNG for each field | lossless |
-
-A field after the first is stored as the rectangle that differs from the field before. Pillow encodes the
-rectangles; the films are put together here, because Pillow keeps all fields in memory until the end. The
-number of fields need not be known before the last. `TimedFilm` takes fields with the times at which they were
-shown.
+A field of a WebP after the first is stored as the rectangle that differs from the field before. Pillow
+encodes the rectangles; the film is put together here, because Pillow keeps all fields in memory until the
+end. The number of fields need not be known before the last. `TimedFilm` takes fields with the times at which
+they were shown.
 
 Measured for 640 x 480 fields of the coupe: a WebP takes 50 KB a field for a turn and 56 KB for a fade of its
-paint. An animated PNG takes about 1.4 times the bytes and 1.2 times the time.
+paint.
 Measured and rejected: slower methods of WebP, which save a fifth to a quarter of the bytes for three to seven
-times the time; docs/PERFORMANCE.md has more.
+times the time; animated PNG, which takes 1.4 times the bytes and 1.2 times the time. docs/PERFORMANCE.md has
+more.
 """
 
 from __future__ import annotations
@@ -32,7 +27,7 @@ from PIL import Image
 
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError
-from ramtek_emu.png import SIGNATURE, chunk, chunks, png_bytes
+from ramtek_emu.png import png_bytes
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 LEAST_RATE: Final = 0.1
@@ -41,9 +36,6 @@ MOST_RATE: Final = 100.0
 
 MOST_FIELDS: Final = 100_000
 """Limit: fields of a film."""
-
-LARGEST_WEBP: Final = 16383
-"""The most elements and lines of a WebP."""
 
 
 def write_film(
@@ -54,7 +46,7 @@ def write_film(
     loop: bool = True,
     overwrite: bool = False,
 ) -> None:
-    """Write (lines, elements, 3) uint8 fields to a film in the format of its suffix.
+    """Write (lines, elements, 3) uint8 fields to a film, whose name ends in .webp.
 
     `fields` are taken one by one. With `loop`, the film begins again at its end. `path` may be a pattern of
     numbered pictures, such as "frame-{number:04}.png"; they have no rate.
@@ -64,22 +56,24 @@ def write_film(
     numbered pictures that were finished stay.
     """
     check_film(path, fields_per_second, overwrite)
-    suffix = Path(path).suffix.lower()
-    if suffix == PICTURES:
+    if Path(path).suffix.lower() == PICTURES:
         for number, field in enumerate(_alike(fields), 1):
             write_atomically(numbered(path, number), png_bytes(field), overwrite=overwrite, sync=False)
         return
     with Output(path, overwrite=overwrite) as output:
-        FORMATS[suffix](output, _alike(fields), fields_per_second, loop)
+        film = AnimatedWebp(output.write, loop)
+        for number, field in enumerate(_alike(fields)):
+            film.add(field, milliseconds_of(number, fields_per_second))
+        output.write_at(AnimatedWebp.LENGTH_PLACE, film.length())
         output.keep()
 
 
 def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: bool = False) -> None:
     """Raise the error of `write_film` for a path that it cannot write, or for a rate of no film."""
     suffix = Path(path).suffix.lower()
-    if suffix not in (*FORMATS, PICTURES):
+    if suffix not in (FILM, PICTURES):
         raise OutputError(
-            f"a film must end in {', '.join(FORMATS)}, or in .png with a number, not in {suffix!r}; rename it"
+            f"a film must end in {FILM}, or in {PICTURES} with a number, not in {suffix!r}; rename it"
         )
     if not LEAST_RATE <= fields_per_second <= MOST_RATE:
         raise ColorsError(
@@ -101,7 +95,7 @@ def _check_pattern(pattern: Path, overwrite: bool) -> None:
     if first == second:
         raise OutputError(
             "numbered pictures must have a number in their name, as in frame-{number:04}.png, not"
-            f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
+            f" {fspath(pattern)!r}; or end the name in .webp for a film"
         )
     refuse_output(first, overwrite)
 
@@ -172,46 +166,77 @@ def differing_area(field: Colors, before: Colors | None) -> Rectangle:
 
 # Animated WebP, by its specification, RFC 9649: a header, and a chunk ANMF for each field.
 
+FILM: Final = ".webp"
+PICTURES: Final = ".png"
+"""The suffixes of a film and of numbered pictures."""
+
+LARGEST_WEBP: Final = 16383
+"""The most elements and lines of a WebP."""
+
 LARGEST_RIFF: Final = (1 << 32) - 10
 """Limit: bytes of a WebP after its first eight."""
+
+LONGEST: Final = (1 << 24) - 1
+"""Limit: milliseconds of a field, four and a half hours."""
 
 ANIMATED: Final = 0x02
 """The flag of an animation in VP8X."""
 
 
-def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> None:
-    before: Colors | None = None
-    written = 0
-    for number, field in enumerate(fields):
-        if before is None:
+class AnimatedWebp:
+    """An animated WebP that is made field by field; `write` gets its bytes.
+
+    The number of bytes stands before the fields. It is 0 until `length` is written at LENGTH_PLACE.
+    """
+
+    LENGTH_PLACE: Final = 4
+
+    def __init__(self, write: Callable[[bytes], object], loop: bool) -> None:
+        self.fields = 0
+        """The number of fields."""
+        self._write = write
+        self._loop = loop
+        self._before: Colors | None = None
+        self._length = 0
+
+    def add(self, field: Colors, milliseconds: int) -> None:
+        """Add a (lines, elements, 3) uint8 field of the size of the others, with its duration.
+
+        Raises OutputError if the field or the film is too large for the format.
+        """
+        if self._before is None:
             lines, elements, _ = field.shape
             if max(lines, elements) > LARGEST_WEBP:
                 raise OutputError(
                     f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(lines, elements)};"
-                    " write .apng"
+                    " write numbered pictures"
                 )
             sizes = _three_bytes(elements - 1, lines - 1)
             header = b"WEBP" + _riff_chunk(b"VP8X", pack("<I", ANIMATED) + sizes)
-            header += _riff_chunk(b"ANIM", pack("<IH", 0, 0 if loop else 1))
-            output.write(b"RIFF\0\0\0\0" + header)
-            written = len(header)
-        area = differing_area(field, before)
+            header += _riff_chunk(b"ANIM", pack("<IH", 0, 0 if self._loop else 1))
+            self._write(b"RIFF\0\0\0\0" + header)
+            self._length = len(header)
+        area = differing_area(field, self._before)
         # The format has half of the place.
         left, top = area.left // 2 * 2, area.top // 2 * 2
         part = field[top : area.top + area.lines, left : area.left + area.elements]
         still = BytesIO()
         Image.fromarray(part).save(still, "WEBP", lossless=True, quality=50, method=0)
-        place = left // 2, top // 2, part.shape[1] - 1, part.shape[0] - 1, milliseconds_of(number, rate)
+        place = left // 2, top // 2, part.shape[1] - 1, part.shape[0] - 1, min(milliseconds, LONGEST)
         # A still picture is a header of 12 bytes and the chunk of its pixels.
         data = _riff_chunk(b"ANMF", _three_bytes(*place) + bytes(1) + still.getvalue()[12:])
-        written += len(data)
-        if written > LARGEST_RIFF:
+        self._length += len(data)
+        if self._length > LARGEST_RIFF:
             raise OutputError(
-                "a WebP must have at most 4 GB, not more; write .apng, or fewer or smaller fields"
+                "a WebP must have at most 4 GB, not more; write fewer or smaller fields, or numbered pictures"
             )
-        output.write(data)
-        before = field
-    output.write_at(4, pack("<I", written))
+        self._write(data)
+        self._before = field
+        self.fields += 1
+
+    def length(self) -> bytes:
+        """The number of the bytes that follow it; it belongs at LENGTH_PLACE."""
+        return pack("<I", self._length)
 
 
 def _three_bytes(*numbers: int) -> bytes:
@@ -222,80 +247,6 @@ def _riff_chunk(kind: bytes, data: bytes) -> bytes:
     return kind + pack("<I", len(data)) + data + bytes(len(data) % 2)
 
 
-# Animated PNG, by its specification: acTL counts the fields, fcTL describes a field, and fdAT holds the data
-# of a field after the first.
-
-PNG_LEVEL: Final = 3
-"""Level 6 takes twice the time for a fifth fewer bytes."""
-
-UNITS: Final = (1000, 100, 10, 1)
-"""The units of a field's duration, per second. It counts at most 65,535 of them."""
-
-
-class AnimatedPng:
-    """An animated PNG that is made field by field; `write` gets its bytes.
-
-    The number of fields stands before the fields. It is 0 until `count` is written at COUNT_PLACE.
-    """
-
-    COUNT_PLACE: Final = 33
-
-    def __init__(self, write: Callable[[bytes], object], loop: bool) -> None:
-        self.fields = 0
-        """The number of fields."""
-        self._write = write
-        self._loop = loop
-        self._before: Colors | None = None
-        self._sequence = 0
-
-    def add(self, field: Colors, milliseconds: int) -> None:
-        """Add a (lines, elements, 3) uint8 field of the size of the others, with its duration."""
-        area = differing_area(field, self._before)
-        parts = list(chunks(png_bytes(area.of(field), PNG_LEVEL)))
-        if self._before is None:
-            self._write(SIGNATURE + chunk(*parts[0]) + self.count())
-        shape = (area.elements, area.lines, area.left, area.top)
-        unit = next((unit for unit in UNITS if milliseconds * unit < 65_535_500), 1)
-        duration = min(65_535, milliseconds * unit // 1000)
-        # Neither dispose of the field before nor blend with it: the rectangle is replaced.
-        self._add_chunk(b"fcTL", pack(">IIIIHHBB", *shape, duration, unit, 0, 0))
-        for kind, data in parts:
-            if kind == b"IDAT" and self._before is None:
-                self._write(chunk(kind, data))
-            elif kind == b"IDAT":
-                self._add_chunk(b"fdAT", data)
-        self._before = field
-        self.fields += 1
-
-    def _add_chunk(self, kind: bytes, data: bytes) -> None:
-        """Write a chunk with its number in the sequence."""
-        self._write(chunk(kind, pack(">I", self._sequence) + data))
-        self._sequence += 1
-
-    def count(self) -> bytes:
-        """The chunk that counts the fields; it belongs at COUNT_PLACE."""
-        return chunk(b"acTL", pack(">II", self.fields, 0 if self._loop else 1))
-
-    def end(self) -> None:
-        """Write the end of the file; the count must still be written."""
-        self._write(chunk(b"IEND", b""))
-
-
-def _write_apng(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> None:
-    film = AnimatedPng(output.write, loop)
-    for number, field in enumerate(fields):
-        film.add(field, milliseconds_of(number, rate))
-    film.end()
-    output.write_at(AnimatedPng.COUNT_PLACE, film.count())
-
-
-FORMATS: Final = {".webp": _write_webp, ".apng": _write_apng}
-"""The function that writes each format, by the suffix."""
-
-PICTURES: Final = ".png"
-"""The suffix of numbered pictures."""
-
-
 # Films of fields as they are shown.
 
 MOST_BYTES: Final = 1 << 28
@@ -303,7 +254,7 @@ MOST_BYTES: Final = 1 << 28
 
 
 class TimedFilm:
-    """Fields with the times at which they were shown, as an animated PNG in memory.
+    """Fields with the times at which they were shown, as an animated WebP in memory.
 
     A field is encoded when the next field is shown, because its duration stands before its data. Measured: a
     field of 640 x 480 that differs everywhere takes 10 ms.
@@ -312,7 +263,7 @@ class TimedFilm:
     def __init__(self, field: Colors, seconds: float) -> None:
         """Begin with a (lines, elements, 3) uint8 field, shown since `seconds` of any clock."""
         self._file = BytesIO()
-        self._film = AnimatedPng(self._file.write, loop=True)
+        self._film = AnimatedWebp(self._file.write, loop=True)
         self._shown = field
         self._began = seconds
         self._milliseconds = 0
@@ -342,7 +293,6 @@ class TimedFilm:
     def end(self, seconds: float) -> bytes:
         """End the film at `seconds`; returns the bytes of its file."""
         self._encode_shown(seconds)
-        self._film.end()
-        self._file.seek(AnimatedPng.COUNT_PLACE)
-        self._file.write(self._film.count())
+        self._file.seek(AnimatedWebp.LENGTH_PLACE)
+        self._file.write(self._film.length())
         return self._file.getvalue()

@@ -53,7 +53,7 @@ FRAMES_PER_SECOND: Final = 24.0
 @click.option(
     "--film",
     metavar="FILE",
-    help="Write a film: .webp or .apng, which lose nothing, or a name pattern for numbered pictures such as"
+    help="Write a film: .webp, which loses nothing, or a name pattern for numbered pictures such as"
     " {number:04}.png. Its last frame is the picture at the end.",
 )
 @click.option(

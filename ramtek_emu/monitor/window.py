@@ -252,13 +252,14 @@ class Monitor:
         A film that cannot be saved in the folder of screenshots goes to the folder of temporary files, or
         else to the home folder.
         """
+        from ramtek_emu.films import FILM
         from ramtek_emu.writing import write_numbered
 
         self._film = None
         fields, data, reason = film.fields, film.end(time.monotonic()), ""
         for folder in (self.screenshots, Path(tempfile.gettempdir()), Path.home()):
             try:
-                path = write_numbered(data, folder, self.file_name, ".apng")
+                path = write_numbered(data, folder, self.file_name, FILM)
             except RamtekError as refusal:
                 reason = reason or f"{refusal}; "
                 continue

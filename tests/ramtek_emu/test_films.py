@@ -17,7 +17,6 @@ from PIL import Image
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError, OutputExistsError, RamtekError
 from ramtek_emu.films import (
-    FORMATS,
     TimedFilm,
     differing_area,
     write_film,
@@ -46,22 +45,20 @@ def noise(count: int, lines: int = 20, elements: int = 30) -> list[Colors]:
     return list(np.random.default_rng(3).integers(0, 256, (count, lines, elements, 3)).astype(np.uint8))
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
 @given(fields=films())
 def test_a_film_is_decoded_to_the_same_fields(
-    fields: list[Colors], suffix: str, tmp_path_factory: pytest.TempPathFactory
+    fields: list[Colors], tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    path = tmp_path_factory.mktemp("films") / f"film{suffix}"
+    path = tmp_path_factory.mktemp("films") / "film.webp"
     write_film(path, iter(fields), fields_per_second=24)
     assert np.array_equal(decoded(path), fields)
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
 def test_a_film_lasts_as_long_as_its_rate_says_and_begins_again_unless_it_is_shown_once(
-    suffix: str, tmp_path: Path
+    tmp_path: Path,
 ) -> None:
     for rate, loop in ((0.5, True), (29.97, False), (50, True)):
-        path = tmp_path / f"{rate}{suffix}"
+        path = tmp_path / f"{rate}.webp"
         write_film(path, noise(7, 2, 3), fields_per_second=rate, loop=loop)
         ends = np.cumsum(durations_of(path))
         assert np.abs(ends - np.arange(1, 8) * 1000 / rate).max() <= 0.5 + 1e-6
@@ -78,8 +75,7 @@ def test_a_rectangle_holds_all_that_differs_and_no_more() -> None:
     assert differing_area(field, None) == (0, 0, 7, 5)
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
-def test_fields_are_taken_one_by_one(suffix: str, tmp_path: Path) -> None:
+def test_fields_are_taken_one_by_one(tmp_path: Path) -> None:
     references: list[weakref.ref[Colors]] = []
     most = 0
 
@@ -91,15 +87,15 @@ def test_fields_are_taken_one_by_one(suffix: str, tmp_path: Path) -> None:
             most = max(most, sum(reference() is not None for reference in references))
             yield copy
 
-    write_film(tmp_path / f"film{suffix}", made(), fields_per_second=24)
+    write_film(tmp_path / "film.webp", made(), fields_per_second=24)
     assert 1 <= most <= 4
 
 
 PATTERN = "numbered pictures must have a number in their name, as in frame-{number:04}.png, not "
 REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
-    ("film.gif", {}, OutputError, "must end in .webp, .apng, or in .png with a number, not in '.gif'"),
+    ("film.gif", {}, OutputError, "must end in .webp, or in .png with a number, not in '.gif'"),
     ("film.webp", {"fields_per_second": math.nan}, ColorsError, "0.1 to 100 fields per second, not nan"),
-    ("there.apng", {}, OutputExistsError, "an output must be a new file, not"),
+    ("there.webp", {}, OutputExistsError, "an output must be a new file, not"),
     ("film.png", {}, OutputError, PATTERN),
     ("{name}-{number}.png", {}, OutputError, PATTERN),
     ("{number.png", {}, OutputError, PATTERN),
@@ -112,7 +108,7 @@ REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
 def test_a_film_that_cannot_be_written_takes_no_field_and_leaves_no_file(
     name: str, options: dict[str, Any], error: type[RamtekError], sentence: str, tmp_path: Path
 ) -> None:
-    old = ["there-01.png", "there.apng"]
+    old = ["there-01.png", "there.webp"]
     for path in old:
         (tmp_path / path).write_bytes(b"old")
     fields = iter(noise(2))
@@ -124,17 +120,16 @@ def test_a_film_that_cannot_be_written_takes_no_field_and_leaves_no_file(
     assert all((tmp_path / path).read_bytes() == b"old" for path in old)
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
 @pytest.mark.parametrize("count", [0, 4])
 def test_a_film_has_at_least_one_field_and_at_most_the_limit(
-    suffix: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("ramtek_emu.films.MOST_FIELDS", 3)
-    write_film(tmp_path / f"three{suffix}", noise(3), fields_per_second=24)
-    assert len(decoded(tmp_path / f"three{suffix}")) == 3
+    write_film(tmp_path / "three.webp", noise(3), fields_per_second=24)
+    assert len(decoded(tmp_path / "three.webp")) == 3
     with pytest.raises(ColorsError, match=r"a film must have at (least one field, not none|most 3 fields)"):
-        write_film(tmp_path / f"film{suffix}", noise(count), fields_per_second=24)
-    assert os.listdir(tmp_path) == [f"three{suffix}"]
+        write_film(tmp_path / "film.webp", noise(count), fields_per_second=24)
+    assert os.listdir(tmp_path) == ["three.webp"]
 
 
 def test_numbered_pictures_are_the_fields(tmp_path: Path) -> None:
@@ -169,22 +164,22 @@ def test_a_timed_film_shows_each_field_for_its_time(
     for field, at in zip(fields[1:], times[1:-1], strict=True):
         film.show(field, at)
     count, data = film.fields, film.end(times[-1])
-    path = tmp_path_factory.mktemp("films") / "film.apng"
+    path = tmp_path_factory.mktemp("films") / "film.webp"
     path.write_bytes(data)
     changes = [n for n, f in enumerate(fields) if n == 0 or not np.array_equal(f, fields[n - 1])]
     assert count == len(changes)
     assert np.array_equal(decoded(path), [fields[number] for number in changes])
     spans = np.diff([*(times[number] for number in changes), times[-1]]) * 1000
-    # Times are rounded to milliseconds, and long durations to the four digits that the format has.
-    assert np.all(np.abs(durations_of(path) - spans) <= 2 + spans / 6553)
+    # Times are rounded to milliseconds.
+    assert np.all(np.abs(durations_of(path) - spans) <= 2)
 
 
 def test_no_duration_of_a_timed_film_is_too_long_for_the_format(tmp_path: Path) -> None:
     first, second = noise(2, 2, 3)
     film = TimedFilm(first, 0)
     film.show(second, 1e6)
-    (tmp_path / "film.apng").write_bytes(film.end(1e6 + 60_000))
-    assert durations_of(tmp_path / "film.apng") == [65_535_000, 60_000_000]
+    (tmp_path / "film.webp").write_bytes(film.end(1e6 + 60))
+    assert durations_of(tmp_path / "film.webp") == [16_777_215, 60_000]
 
 
 @pytest.mark.parametrize("limit", ["FIELDS", "BYTES"])
@@ -200,7 +195,6 @@ def test_a_timed_film_is_full_at_its_limits(limit: str, monkeypatch: pytest.Monk
     assert full == [False, True, True]
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
@@ -211,9 +205,7 @@ def test_a_timed_film_is_full_at_its_limits(limit: str, monkeypatch: pytest.Monk
         ([np.zeros((0, 3, 3), np.uint8)], "1 of shape (0, 3, 3)"),
     ],
 )
-def test_fields_that_are_not_alike_make_no_film(
-    suffix: str, fields: list[Any], sentence: str, tmp_path: Path
-) -> None:
+def test_fields_that_are_not_alike_make_no_film(fields: list[Any], sentence: str, tmp_path: Path) -> None:
     with pytest.raises(ColorsError, match=re.escape(f"not field {sentence}")):
-        write_film(tmp_path / f"film{suffix}", fields, fields_per_second=24)
+        write_film(tmp_path / "film.webp", fields, fields_per_second=24)
     assert os.listdir(tmp_path) == []

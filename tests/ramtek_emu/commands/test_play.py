@@ -67,9 +67,9 @@ def frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     ("name", "options", "expected"),
     [
         ("a.webp", [], [20, 40, 60, 80, 100]),
-        ("a.apng", ["--every", 1], [20, 40, 60, 80, 100]),
-        ("a.apng", ["--every", 2], [40, 80, 100]),
-        ("a.apng", ["--every", 9], [100]),
+        ("a.webp", ["--every", 1], [20, 40, 60, 80, 100]),
+        ("a.webp", ["--every", 2], [40, 80, 100]),
+        ("a.webp", ["--every", 9], [100]),
     ],
 )
 def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
@@ -85,18 +85,18 @@ def test_a_film_has_a_frame_after_each_load_or_after_some_instructions(
 def test_a_film_goes_on_from_a_snapshot_and_is_written_with_all_other_outputs(frames: str) -> None:
     assert play(frames, "--configuration", "PRINCETON_9300", "--snapshot", "a.png").exit_code == 0
     Path("nop.ramtek").write_bytes(stream([0x0700]))
-    options = ("--start", "a.png", "--film", "b.apng", "--fps", 5, "--once")
+    options = ("--start", "a.png", "--film", "b.webp", "--fps", 5, "--once")
     assert play("nop.ramtek", *options, "--record", "b.ramtek", "--snapshot", "b.png").exit_code == 0
-    assert np.array_equal(decoded("b.apng")[0], read_snapshot("b.png").field())
+    assert np.array_equal(decoded("b.webp")[0], read_snapshot("b.png").field())
     assert Path("b.ramtek").read_bytes() == Path("nop.ramtek").read_bytes()
-    assert durations_of(Path("b.apng")) == [200]
-    with Image.open("b.apng") as film:
+    assert durations_of(Path("b.webp")) == [200]
+    with Image.open("b.webp") as film:
         assert film.info["loop"] == 1
 
 
 REFUSED: list[tuple[list[object], int, str]] = [
     (["--film", "a.gif"], 73, "a film must end in"),
-    (["--film", "frames.apng"], 73, "which exists"),
+    (["--film", "frames.webp"], 73, "which exists"),
     (["--film", "a.webp", "--fps", 101], 2, "101.0 is not in the range 0.1<=x<=100"),
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
     (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second is for the window"),
@@ -110,15 +110,15 @@ REFUSED: list[tuple[list[object], int, str]] = [
 def test_a_wrong_film_is_refused_before_the_stream_is_read(
     frames: str, options: list[object], code: int, sentence: str
 ) -> None:
-    Path("frames.apng").write_bytes(b"old")
+    Path("frames.webp").write_bytes(b"old")
     refused = play("none.ramtek", *options)
     error = refused.exception
     assert (error.exit_code if isinstance(error, RamtekError) else refused.exit_code) == code
     assert sentence in refused.stderr + str(error)
-    assert sorted(path.name for path in Path().iterdir()) == ["frames.apng", "frames.ramtek"]
+    assert sorted(path.name for path in Path().iterdir()) == ["frames.ramtek", "frames.webp"]
 
 
-@pytest.mark.parametrize("name", ["a.apng", "{number}.png"])
+@pytest.mark.parametrize("name", ["a.webp", "{number}.png"])
 def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
     frames: str, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -164,7 +164,7 @@ def test_of_a_stream_that_cannot_be_read_to_its_end_a_window_shows_the_beginning
     assert Path("a.ramtek").read_bytes() == stream(FRAMES)
     # Nothing is left of a film.
     pieces.append(stream(FRAMES))
-    assert isinstance(play(frames, "--film", "a.apng", "-o", "b.png").exception, MissingInputError)
+    assert isinstance(play(frames, "--film", "a.webp", "-o", "b.png").exception, MissingInputError)
     assert sorted(path.name for path in Path().iterdir()) == ["a.ramtek", frames]
 
 

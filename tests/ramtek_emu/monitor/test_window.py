@@ -198,7 +198,7 @@ def test_a_recording_has_the_fields_that_were_shown_with_their_times(
     monitor: Monitor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = Clock(monkeypatch)
-    (tmp_path / "ramtek-0001.apng").write_bytes(b"mine")
+    (tmp_path / "ramtek-0001.webp").write_bytes(b"mine")
     fields = [show_load(monitor, 10)]
     press(monitor, pygame.K_F3)
     assert title() == "RAMTEK 9300 - recording - F3 ends it"
@@ -211,11 +211,11 @@ def test_a_recording_has_the_fields_that_were_shown_with_their_times(
         settle(monitor)
     clock.now += 0.5
     press(monitor, pygame.K_F3)
-    path = tmp_path / "ramtek-0002.apng"
+    path = tmp_path / "ramtek-0002.webp"
     assert title() == f"RAMTEK 9300 - saved {path.resolve()}, 4 fields"
     assert np.array_equal(decoded(path), fields)
     assert durations_of(path) == [250, 250, 100, 500]
-    assert (tmp_path / "ramtek-0001.apng").read_bytes() == b"mine"
+    assert (tmp_path / "ramtek-0001.webp").read_bytes() == b"mine"
     show_load(monitor, 40)
     monitor.caption = "another"
     assert title() == "another"
@@ -237,7 +237,7 @@ def test_in_full_screen_a_message_stands_over_the_field_for_a_while_and_in_no_fi
     monitor.step()
     assert np.array_equal(shown(), before)
     press(monitor, pygame.K_F3)
-    assert np.array_equal(decoded(tmp_path / "ramtek-0001.apng"), [monitor.display.field()])
+    assert np.array_equal(decoded(tmp_path / "ramtek-0001.webp"), [monitor.display.field()])
 
 
 def test_a_recording_that_is_full_is_saved(
@@ -247,7 +247,7 @@ def test_a_recording_that_is_full_is_saved(
     fields = [monitor.display.field()]
     press(monitor, pygame.K_F3)
     fields += [show_load(monitor, red) for red in (10, 20, 30)]
-    path = tmp_path / "ramtek-0001.apng"
+    path = tmp_path / "ramtek-0001.webp"
     assert messages == [f"the film is full: saved {path.resolve()}, 3 fields"]
     monitor.caption = "RAMTEK"
     assert title() == "RAMTEK"
@@ -264,11 +264,11 @@ def test_closing_the_window_saves_the_recording(
     else:
         press(monitor, *QUIT)
     assert not monitor.is_open
-    path = tmp_path / "ramtek-0001.apng"
+    path = tmp_path / "ramtek-0001.webp"
     assert np.array_equal(decoded(path), [monitor.display.field()])
     assert capsys.readouterr().err == f"saved {path.resolve()}, 1 field\n"
     monitor.close()
-    assert [path.name for path in tmp_path.iterdir()] == ["ramtek-0001.apng"]
+    assert [path.name for path in tmp_path.iterdir()] == ["ramtek-0001.webp"]
 
 
 def test_a_recording_that_cannot_be_saved_goes_to_another_folder(
@@ -286,7 +286,7 @@ def test_a_recording_that_cannot_be_saved_goes_to_another_folder(
     press(monitor, pygame.K_F3)
     fields.append(show_load(monitor, 10))
     press(monitor, pygame.K_F3)
-    path = elsewhere / "ramtek-0001.apng"
+    path = elsewhere / "ramtek-0001.webp"
     assert messages[0].endswith(f"; saved {path.resolve()}, 2 fields")
     assert np.array_equal(decoded(path), fields)
     # Without any folder, the film is lost.
