@@ -238,11 +238,9 @@ class Twin:
                     self.put((element, line), self.colors[1])
 
     def bers(self) -> None:
-        window, self.p["write_window"] = self.p["write_window"], self.whole
-        for line in range(self.size[1]):
-            for element in range(self.size[0]):
-                self.put((element, line), self.colors[1])
-        self.p["write_window"] = window
+        before, self.p = self.p, self.p | {"window": self.whole, "write_window": self.whole}
+        self.ers()
+        self.p = before
 
     def scan(self, count: int, pairs: bool = False) -> list[Place]:
         """The places of so many words of the window; the operating point moves behind the last."""
