@@ -29,7 +29,7 @@ MOST_BYTES: Final = 1 << 12
 """Limit: the most bytes of a line. The rest of a longer line is another line."""
 MOST_LINES: Final = 64
 """Limit: the most lines that wait; while they do, no more are read."""
-NUMBER: Final = re.compile(r"[+-]?[0-9]{1,6}")
+TWO_NUMBERS: Final = re.compile(r"[+-]?[0-9]{1,6} [+-]?[0-9]{1,6}")
 
 Action = Callable[[], object]
 
@@ -46,9 +46,9 @@ def actions(line: str, joystick: Joystick, reset: Action) -> list[Action]:
                 asked.append(reset)
             case ["track", "on" | "off" as switch, *rest]:
                 asked.append(partial(setattr, joystick, "track", switch == "on"))
-            case ["cursor" | "by" as kind, element, line_number, *rest] if _are_numbers(element, line_number):
+            case ["cursor" | "by" as kind, x, y, *rest] if TWO_NUMBERS.fullmatch(f"{x} {y}"):
                 move = joystick.move_to if kind == "cursor" else joystick.move_by
-                asked.append(partial(move, int(element), int(line_number)))
+                asked.append(partial(move, int(x), int(y)))
             case _:
                 shown = line if len(line) <= 60 else f"{line[:60]}..."
                 raise ValueError(
@@ -57,10 +57,6 @@ def actions(line: str, joystick: Joystick, reset: Action) -> list[Action]:
                 )
         words = rest
     return asked
-
-
-def _are_numbers(*words: str) -> bool:
-    return all(NUMBER.fullmatch(word) for word in words)
 
 
 class JoystickLines:

@@ -314,14 +314,10 @@ class UnixPort(SocketPort):
         super().__init__(address, connected_socket(address, timeout), timeout)
 
     def write(self, data: bytes) -> None:
-        """Send up to 65,536 bytes as one write, as a program of the time did.
+        """Send bytes as one write of a program of the time: a last odd byte is dropped.
 
-        PortError if the connection is lost, or if there are more bytes.
+        More than 65,536 bytes are sent in several packets. PortError if the connection is lost.
         """
-        if len(data) > self.at_once:
-            raise PortError(
-                f"a write must be at most {self.at_once} bytes, not {len(data)}; divide it at an even place"
-            )
         self._send(data)
 
 

@@ -239,7 +239,7 @@ class Client:
     def _read(self) -> None:
         has_packets = keeps_writes(self.socket)
         try:
-            data = read_socket(self.socket, READ_BYTES, socket.MSG_PEEK if has_packets else 0)
+            data = self._receive(socket.MSG_PEEK if has_packets else 0)
         except OSError:
             data = b""
         if data is None:
@@ -253,6 +253,13 @@ class Client:
         if not self._sent_all:
             self._pending = self.session.feed(data)
 
+    def _receive(self, flags: int = 0) -> bytes | None:
+        try:
+            return read_socket(self.socket, READ_BYTES, flags)
+        except ConnectionError:
+            # If a host leaves without its replies, an error comes once, before the last packets of the host.
+            return read_socket(self.socket, READ_BYTES, flags)
+
     def _work(self) -> bool:
         """Execute a piece of the host's words; returns whether there was a piece."""
         has_work = self.has_work
@@ -264,7 +271,7 @@ class Client:
                 self._pending = None
                 if self._packet_bytes:
                     # The packet is executed: take it out of the socket.
-                    self.socket.recv(1)
+                    self._receive()
                     self._packet_bytes = 0
         if has_work or self.session.is_stopped:
             # The display was working, or a program stops the host: this was no silence of the host.

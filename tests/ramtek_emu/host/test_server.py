@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import select
 import socket
 import stat
 import threading
@@ -316,6 +317,21 @@ def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
         host.close()
         until(lambda: not client.step() and client.ended)
         assert client.session.display.words[5, 5] == 7
+
+
+@pytest.mark.usefixtures("one_instruction_a_piece")
+def test_the_last_packets_of_a_host_that_left_without_its_replies_are_drawn_once() -> None:
+    for more in (b"", DOT):
+        with host_and_client() as (host, client):
+            host.send(packet("0B03 0040 0 0 0 0 2") + more)
+            # The reply is sent while the rest of the packet waits.
+            while not select.select([host], [], [], 0)[0]:
+                client.step()
+            host.send(DOT)
+            host.close()
+            until(lambda: not client.step() and client.ended)
+            assert client.session.display.words[5, 5] == 7
+            assert client.read_bytes == 14 + len(more) + len(DOT)
 
 
 @pytest.mark.usefixtures("one_instruction_a_piece")
