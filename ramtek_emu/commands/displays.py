@@ -341,13 +341,6 @@ def show(
         monitor.close()
 
 
-def tell_unexecuted(words: int) -> None:
-    """Report words that had arrived when the display ended."""
-    if words:
-        things = "word of the host arrived and was" if words == 1 else "words of the host arrived and were"
-        tell(f"{words:,} {things} not executed")
-
-
 def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
     """Report words that were not executed: illegal words, instructions without effect, an incomplete end.
 
@@ -361,6 +354,8 @@ def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
     if unknown:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")
+    if session.unexecuted:
+        tell(f"{end} before all of its words were executed")
     if rest := session.display.decoder.pending_words:
         tell(f"{end} within an instruction: its {rest} words were dropped")
     if session.odd_byte:

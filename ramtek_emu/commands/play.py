@@ -19,7 +19,6 @@ from ramtek_emu.commands.displays import (
     show,
     tell,
     tell_the_end,
-    tell_unexecuted,
     unreadable,
 )
 from ramtek_emu.errors import MissingInputError
@@ -99,7 +98,6 @@ def play(
     display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.host import pipe
-    from ramtek_emu.host.port import waiting_bytes
 
     number = file.fileno()
     with file, running(display, output, snapshot, record, force) as run:
@@ -126,18 +124,14 @@ def play(
                 show(display, run, server.serve_for)
             return
         server = pipe.PipeServer(display, read, record=run.record)
-        session = server.session
-        waiting = 0
         if film is None:
             server.serve(lambda: run.ends)
         else:
             is_cut = pipe.is_load if every is None else pipe.every(every)
-            cut = pipe.CutReader(read, display.configuration, is_cut)
-            fields = pipe.stream_fields(session, cut, lambda: run.ends)
+            cut = pipe.stream_pieces(read, display.configuration, is_cut)
+            fields = pipe.stream_fields(server.session, cut, lambda: run.ends)
             write_fields(film, fields, run, fps or FRAMES_PER_SECOND, not once, force)
-            waiting = cut.waiting
-        tell_the_end(session, is_cut_off=run.ends)
-        tell_unexecuted(session.unexecuted + (waiting + waiting_bytes(number)) // 2)
+        tell_the_end(server.session, is_cut_off=run.ends)
     if run.signal:
         raise Ended(run.signal)
 

@@ -22,7 +22,6 @@ from ramtek_emu.commands.displays import (
     show,
     tell,
     tell_the_end,
-    tell_unexecuted,
 )
 
 if TYPE_CHECKING:
@@ -123,7 +122,6 @@ def serve(
 
     from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.pipe import PipeServer
-    from ramtek_emu.host.port import waiting_bytes
     from ramtek_emu.host.server import TcpServer, UnixServer
 
     with running(display, output, snapshot, record, force) as run:
@@ -165,11 +163,8 @@ def serve(
                     server.step(STEP_SECONDS if joystick is None else JOYSTICK_SECONDS)
                 if isinstance(server, PipeServer):
                     server.finish(lambda: run.ends)
-            rest = 0
             if stdio:
                 tell_the_end(server.session, is_cut_off=run.ends)
-                rest = waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin is not None else 0
-            tell_unexecuted(server.unexecuted + rest)
 
 
 def refuse_options_without_effect(context: click.Context) -> None:

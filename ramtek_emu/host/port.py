@@ -14,7 +14,6 @@ import re
 import selectors
 import socket
 import struct
-import sys
 import time
 from contextlib import suppress
 from types import TracebackType
@@ -109,23 +108,6 @@ def break_off(connected: socket.socket) -> None:
     # On some systems, a lost connection accepts no options.
     with suppress(OSError):
         connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-
-
-def waiting_bytes(file: socket.socket | int) -> int:
-    """The number of bytes that have arrived at a socket or a pipe, or that are left in a file.
-
-    0 on systems that do not tell.
-    """
-    if sys.platform != "linux":
-        return 0
-    import fcntl
-    import termios
-
-    try:
-        answer = fcntl.ioctl(file, termios.FIONREAD, bytes(struct.calcsize("i")))
-    except OSError:
-        return 0
-    return int.from_bytes(answer, sys.byteorder)
 
 
 MOST_SECONDS: Final = 1_000_000

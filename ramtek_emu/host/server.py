@@ -46,7 +46,6 @@ from ramtek_emu.host.port import (
     prepared,
     read_socket,
     ready,
-    waiting_bytes,
     write_socket,
 )
 from ramtek_emu.instruction_set.instruction import NO_WORDS
@@ -179,10 +178,8 @@ class Client:
         self.idle_seconds = idle_seconds
         self._replies: deque[bytes] = deque()
         self._pending: Iterator[bytes] | None = None
-        self.read_bytes = 0
-        """The number of bytes that were read."""
-        self._packet_bytes = 0
-        """The bytes of the packet that is executed. The packet stays in the socket until then."""
+        self._holds_packet = False
+        """Whether the packet that is executed is still in the socket, where it stays until then."""
         self._sent_all = False
         self._last_transfer = time.monotonic()
 
@@ -206,12 +203,6 @@ class Client:
     def deadline(self) -> float:
         """The time when the host is disconnected, unless something is transferred before."""
         return self._last_transfer + self.idle_seconds
-
-    @property
-    def unexecuted(self) -> int:
-        """The number of the host's words that have arrived and are not executed."""
-        data = waiting_bytes(self.socket) - self._packet_bytes + len(self.session.odd_byte)
-        return data // 2 + self.session.unexecuted
 
     def step(self, seconds: float = 0.0) -> bool:
         """Read, execute and reply once, waiting up to `seconds`; returns whether anything was done."""
@@ -244,11 +235,10 @@ class Client:
             data = b""
         if data is None:
             return
-        self.read_bytes += len(data)
         self._sent_all = not data
         if has_packets:
             # A packet is a write of the host: round it down to whole words.
-            self._packet_bytes = len(data)
+            self._holds_packet = True
             data = data[: len(data) & ~1]
         if not self._sent_all:
             self._pending = self.session.feed(data)
@@ -269,10 +259,10 @@ class Client:
                 self._replies.append(reply)
             elif reply is None:
                 self._pending = None
-                if self._packet_bytes:
+                if self._holds_packet:
                     # The packet is executed: take it out of the socket.
                     self._receive()
-                    self._packet_bytes = 0
+                    self._holds_packet = False
         if has_work or self.session.is_stopped:
             # The display was working, or a program stops the host: this was no silence of the host.
             self._last_transfer = time.monotonic()
@@ -318,11 +308,6 @@ class Server:
     def busy(self) -> bool:
         """Whether a host is being served."""
         return self._client is not None
-
-    @property
-    def unexecuted(self) -> int:
-        """The number of words of the host that is served which have arrived and are not executed."""
-        return 0 if self._client is None else self._client.unexecuted
 
     def step(self, seconds: float = 0.0) -> bool:
         """Serve once, waiting up to `seconds` for an event; returns whether anything was done."""

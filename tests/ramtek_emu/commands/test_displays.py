@@ -83,7 +83,7 @@ def test_a_signal_ends_a_command_within_a_long_instruction(tmp_path: Path) -> No
         host.send(np.concatenate((drawn, long)))
         assert host.receive(1) == 0
         said = ended(process, signal.SIGTERM)
-    assert f"{len(long):,} words of the host arrived and were not executed" in said
+    assert "a signal ended the stream before all of its words were executed" in said
     assert names[2].read_bytes() == stream(drawn)
     half_drawn = read_snapshot(names[1])
     lines = (half_drawn.words == 5).all(axis=1).tolist()
