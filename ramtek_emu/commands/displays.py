@@ -32,8 +32,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
     """The names of configurations, for completion in a shell, in upper or lower case."""
     names = [name.lower().replace("_", "-") for name in CONFIGURATIONS]
-    # The longer names begin with the shorter: offer them when a name is complete.
-    names += [f"{name}-monochrome" for name in names if incomplete.lower().replace("_", "-").startswith(name)]
+    names += [f"{name}-monochrome" for name in names]
     return [name for name in names if name.startswith(incomplete.lower().replace("_", "-"))]
 
 
@@ -252,8 +251,6 @@ def running(
 
 def open_stream(path: str) -> BinaryIO:
     """The input file, stdin for `-`; MissingInputError if it cannot be read."""
-    if path == "":
-        raise click.UsageError("an input must be the name of a file, not ''; give it one")
     if path == "-":
         if sys.stdin is None:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
