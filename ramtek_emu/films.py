@@ -90,7 +90,7 @@ def _check_pattern(pattern: Path, overwrite: bool) -> None:
     """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
     try:
         first, second = (numbered(pattern, number) for number in (1, 2))
-    except (LookupError, ValueError, AttributeError):
+    except (LookupError, ValueError, TypeError, AttributeError):
         first = second = ""
     if first == second:
         raise OutputError(

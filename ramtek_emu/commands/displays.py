@@ -352,7 +352,7 @@ def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")
     if session.unexecuted:
-        tell(f"{end} before all of its words were executed")
+        tell("the display ended before it had executed all words of the host")
     if rest := session.display.decoder.pending_words:
         tell(f"{end} within an instruction: its {rest} words were dropped")
     if session.odd_byte:

@@ -387,7 +387,6 @@ class TcpServer(Server):
                 f"a server must have a free port, and {host}:{port} cannot be opened ({reason_of(cause)}); "
                 "choose another, or 0 for any"
             ) from cause
-        self.host = host
         self.port: int = listener.getsockname()[1]
         address = f"tcp://{f'[{host}]' if ':' in host else host}:{self.port}"
         super().__init__(display, listener, address, idle_seconds, record)

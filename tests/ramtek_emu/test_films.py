@@ -95,6 +95,7 @@ REFUSED: list[tuple[str, dict[str, Any], type[RamtekError], str]] = [
     ("film.png", {}, OutputError, PATTERN),
     ("{name}-{number}.png", {}, OutputError, PATTERN),
     ("{number.png", {}, OutputError, PATTERN),
+    ("{number[0]}.png", {}, OutputError, PATTERN),
     ("none/{number}.png", {}, OutputError, "there is no folder"),
     ("there-{number:02}.png", {}, OutputExistsError, "there-01.png, which exists"),
 ]

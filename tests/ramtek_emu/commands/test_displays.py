@@ -52,7 +52,7 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
 ATTACKS = (
     (row_of("serve --stdio -o", unread), signal.SIGHUP, ""),
     (row_of("serve --port", filling), signal.SIGINT, ""),
-    (row_of("serve --stdio -o", filling), signal.SIGTERM, "before all of its words were executed"),
+    (row_of("serve --stdio -o", filling), signal.SIGTERM, "before it had executed all words"),
     (row_of("serve --unix", filling), signal.SIGHUP, ""),
     (row_of("play", recording), signal.SIGHUP, ""),
     (row_of("list", printing), signal.SIGTERM, ""),
@@ -82,7 +82,7 @@ def test_a_signal_ends_a_command_within_a_long_instruction(tmp_path: Path) -> No
         host.send(np.concatenate((drawn, long)))
         assert host.receive(1) == 0
         said = ended(process, signal.SIGTERM)
-    assert "a signal ended the stream before all of its words were executed" in said
+    assert "the display ended before it had executed all words of the host" in said
     assert names[2].read_bytes() == stream(drawn)
     half_drawn = read_snapshot(names[1])
     lines = (half_drawn.words == 5).all(axis=1).tolist()
