@@ -183,14 +183,9 @@ class Run:
         return False
 
     def attempt(self, write: Callable[[], object]) -> bool:
-        """Write an output, and return True; if that fails, report the reason and return False.
-
-        A film is written while its stream is read. If the stream fails, MissingInputError is raised.
-        """
+        """Write an output, and return True; if that fails, report the reason and return False."""
         try:
             write()
-        except MissingInputError:
-            raise
         except RamtekError as failure:
             self.fail(failure)
             return False

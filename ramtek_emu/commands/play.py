@@ -21,7 +21,6 @@ from ramtek_emu.commands.displays import (
     tell_the_end,
     unreadable,
 )
-from ramtek_emu.errors import MissingInputError
 
 if TYPE_CHECKING:
     from ramtek_emu.arrays import Colors
@@ -106,21 +105,15 @@ def play(
             try:
                 return os.read(number, most) if run.wait(number) else b""
             except OSError as cause:
-                raise unreadable(cause) from None
-
-        def read_for_window(most: int) -> bytes:
-            # The window stays open with the words that were read.
-            try:
-                return read(most)
-            except MissingInputError as failure:
-                run.fail(failure)
+                # The window stays open, and outputs are written, with the words that were read.
+                run.fail(unreadable(cause))
                 return b""
 
         if in_window:
-            paced: pipe.Read = read_for_window
+            shown: pipe.Read = read
             if loads_per_second is not None:
-                paced = pipe.paced(paced, loads_per_second, display.configuration)
-            with pipe.PipeServer(display, paced, record=run.record) as server:
+                shown = pipe.paced(read, loads_per_second, display.configuration)
+            with pipe.PipeServer(display, shown, record=run.record) as server:
                 show(display, run, server.serve_for)
             return
         server = pipe.PipeServer(display, read, record=run.record)
@@ -137,10 +130,7 @@ def play(
 
 
 def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loop: bool, force: bool) -> None:
-    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on.
-
-    Raises MissingInputError if the stream cannot be read to its end.
-    """
+    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on."""
     from ramtek_emu.films import write_film
 
     if run.attempt(lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)):
