@@ -282,10 +282,7 @@ def read_stream(path: str, configuration: Configuration) -> Stream:
         )
     words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
     stream = Stream(configuration, words)
-    if rest := len(words) - int(stream.ends[-1]):
-        tell(f"the stream {path} ends within an instruction: its {rest} words were dropped")
-    if len(data) % 2:
-        tell(f"the stream {path} ends within a word: its last byte was dropped")
+    tell_incomplete(f"the stream {path}", len(words) - int(stream.ends[-1]), len(data) % 2 != 0)
     return stream
 
 
@@ -333,22 +330,21 @@ def show(
         monitor.close()
 
 
-def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
-    """Report words that were not executed: illegal words, instructions without effect, an incomplete end.
-
-    With `is_cut_off`, a signal ended the stream.
-    """
-    end = "a signal ended the stream" if is_cut_off else "the stream ends"
+def tell_the_end(session: HostSession) -> None:
+    """Report words that were not executed: illegal words, instructions without effect, an incomplete end."""
     processor = session.display.processor
-    illegal, unknown = processor.illegal_words, processor.unimplemented
-    if illegal:
-        tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
-    if unknown:
-        plural = "instruction is" if unknown == 1 else "instructions are"
-        tell(f"{unknown} {plural} known by name only: without effect")
+    if illegal := processor.illegal_words:
+        tell(f"words that begin no instruction, skipped: {illegal}")
+    if unknown := processor.unimplemented:
+        tell(f"instructions known by name only, without effect: {unknown}")
     if session.unexecuted:
         tell("the display ended before it had executed all words of the host")
-    if rest := session.display.decoder.pending_words:
-        tell(f"{end} within an instruction: its {rest} words were dropped")
-    if session.odd_byte:
-        tell(f"{end} within a word: its last byte was dropped")
+    tell_incomplete("the stream", session.display.decoder.pending_words, session.odd_byte != b"")
+
+
+def tell_incomplete(stream: str, words: int, has_odd_byte: bool) -> None:
+    """Report the words of an instruction, and the byte, that begin at the end of a stream."""
+    if words:
+        tell(f"{stream} ends within an instruction: its {words} words were dropped")
+    if has_odd_byte:
+        tell(f"{stream} ends within a word: its last byte was dropped")

@@ -124,7 +124,7 @@ def play(
             cut = pipe.stream_pieces(read, display.configuration, is_cut)
             fields = pipe.stream_fields(server.session, cut, lambda: run.ends)
             write_fields(film, fields, run, fps, not once, force)
-        tell_the_end(server.session, is_cut_off=run.ends)
+        tell_the_end(server.session)
     if run.signal:
         raise Ended(run.signal)
 

@@ -147,7 +147,7 @@ def serve(
                 if isinstance(server, PipeServer):
                     server.finish(lambda: run.ends)
             if stdio:
-                tell_the_end(server.session, is_cut_off=run.ends)
+                tell_the_end(server.session)
 
 
 def watch(server: Server, run: Run, obey: Callable[[], object], inspected: Replay | None) -> None:
