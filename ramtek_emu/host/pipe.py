@@ -31,19 +31,16 @@ Write = Callable[[bytes], object]
 """A function that writes all of the bytes; ConnectionError if the pipe has no reader."""
 
 
-def dropped(_: bytes) -> None:
-    """Drop replies."""
-
-
 class PipeServer(Server):
     """A display that serves a single host, which is connected by two pipes.
 
     `serve` waits for the host, as a command does. `step` does not, as with other servers: two threads copy
     the bytes of the pipes to a socket and from it, and the display serves the other end of the socket.
+    Without `write`, replies are dropped.
     """
 
     def __init__(
-        self, display: Ramtek9300, read: Read, write: Write = dropped, record: Record | None = None
+        self, display: Ramtek9300, read: Read, write: Write = lambda _: None, record: Record | None = None
     ) -> None:
         super().__init__(display, None, "", math.inf, record)
         self._read, self._write = read, write

@@ -17,7 +17,7 @@ import struct
 import time
 from contextlib import suppress
 from types import TracebackType
-from typing import BinaryIO, Final, Protocol, TypeVar
+from typing import BinaryIO, Final, Protocol, Self
 
 import numpy as np
 
@@ -110,9 +110,6 @@ def break_off(connected: socket.socket) -> None:
         connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
-Self = TypeVar("Self", bound="SocketPort")
-
-
 class SocketPort:
     """A host port over a connected socket; `timeout` is the longest wait for the display, in seconds.
 
@@ -185,7 +182,7 @@ class SocketPort:
             f"{self.address} has not: it may be serving another host first; give a longer timeout"
         )
 
-    def __enter__(self: Self) -> Self:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

@@ -31,7 +31,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from typing import Final, TypeVar
+from typing import Final, Self
 
 import numpy as np
 
@@ -280,8 +280,6 @@ IDLE_SECONDS: Final = 600.0
 HOSTS_IN_LINE: Final = 128
 """Limit: the most hosts that wait in line."""
 
-Self = TypeVar("Self", bound="Server")
-
 
 class Server:
     """A display that serves one host after the other; `address` is the address for a host's port."""
@@ -336,7 +334,7 @@ class Server:
         if self._listener is not None:
             self._listener.close()
 
-    def __enter__(self: Self) -> Self:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
