@@ -178,8 +178,6 @@ class Client:
         self.idle_seconds = idle_seconds
         self._replies: deque[bytes] = deque()
         self._pending: Iterator[bytes] | None = None
-        self._holds_packet = False
-        """Whether the packet that is executed is still in the socket, where it stays until then."""
         self._sent_all = False
         self._last_transfer = time.monotonic()
 
@@ -237,8 +235,7 @@ class Client:
             return
         self._sent_all = not data
         if has_packets:
-            # A packet is a write of the host: round it down to whole words.
-            self._holds_packet = True
+            # A packet is a write of the host: round it down to whole words. It is taken out when it is executed.
             data = data[: len(data) & ~1]
         if not self._sent_all:
             self._pending = self.session.feed(data)
@@ -259,10 +256,9 @@ class Client:
                 self._replies.append(reply)
             elif reply is None:
                 self._pending = None
-                if self._holds_packet:
+                if keeps_writes(self.socket):
                     # The packet is executed: take it out of the socket.
                     self._receive()
-                    self._holds_packet = False
         if has_work or self.session.is_stopped:
             # The display was working, or a program stops the host: this was no silence of the host.
             self._last_transfer = time.monotonic()

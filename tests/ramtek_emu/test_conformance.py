@@ -109,6 +109,7 @@ def test_what_is_no_program_and_no_key_is_refused(tmp_path: Path) -> None:
         assert f"COMMAND must be a program, not '{script}' (" in run("--", str(script), code=2)
     assert "not 'nowhere' (No such file or directory); give" in run("--", "nowhere", code=2)
     assert "--only must be the key of a claim, not NO SUCH KEY" in run("--only", "NO SUCH KEY", code=2)
+    assert "a claim that a pipe can test, not listings" in run("--only", "listings", "--", "true", code=2)
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node runs JavaScript")
