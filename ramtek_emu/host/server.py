@@ -235,7 +235,7 @@ class Client:
             return
         self._sent_all = not data
         if has_packets:
-            # A packet is a write of the host: round it down to whole words. It is taken out when it is executed.
+            # A packet is a write of the host: round it down to whole words. It is taken when it is executed.
             data = data[: len(data) & ~1]
         if not self._sent_all:
             self._pending = self.session.feed(data)
