@@ -142,6 +142,9 @@ FILM: Final = ".webp"
 PICTURES: Final = ".png"
 """The suffixes of a film and of numbered pictures."""
 
+LARGEST_WEBP: Final = 16383
+"""The most elements and lines of a WebP."""
+
 LARGEST_RIFF: Final = (1 << 32) - 10
 """Limit: bytes of a WebP after its first eight."""
 
@@ -171,10 +174,15 @@ class AnimatedWebp:
     def add(self, field: Colors, milliseconds: int) -> None:
         """Add a (lines, elements, 3) uint8 field of the size of the others, with its duration.
 
-        Raises OutputError if the film is too large for the format.
+        Raises OutputError if the field or the film is too large for the format.
         """
         if self._before is None:
             lines, elements, _ = field.shape
+            if max(lines, elements) > LARGEST_WEBP:
+                raise OutputError(
+                    f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(lines, elements)};"
+                    " write numbered pictures"
+                )
             sizes = _three_bytes(elements - 1, lines - 1)
             header = b"WEBP" + _riff_chunk(b"VP8X", pack("<I", ANIMATED) + sizes)
             header += _riff_chunk(b"ANIM", pack("<IH", 0, 0 if self._loop else 1))

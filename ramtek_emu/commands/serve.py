@@ -11,6 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
+from click.core import ParameterSource
 
 from ramtek_emu.commands.displays import (
     display_asked_for,
@@ -39,6 +40,15 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
+WITHOUT_EFFECT: Final = (
+    ("host", "unix"),
+    ("host", "stdio"),
+    ("idle", "stdio"),
+    ("once", "stdio"),
+    ("once", "window"),
+    ("once", "inspect"),
+)
+"""Options that have no effect beside the second option."""
 STEP_SECONDS: Final = 0.02
 """How long a line for the joystick, or a signal, may be unnoticed while no words arrive."""
 WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
@@ -49,7 +59,7 @@ WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
 @click.option("--port", type=click.IntRange(0, 65535), help="Listen here; 0 is any free port.")
 @click.option("--unix", type=click.Path(), metavar="PATH", help="Listen at a Unix socket: whole writes.")
 @click.option("--stdio", is_flag=True, help="Words on stdin, replies on stdout.")
-@click.option("--host", default="127.0.0.1", show_default=True, help="With --port: the address to listen at.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen at.")
 @click.option("--window", is_flag=True, help="Show the display in a window.")
 @click.option("--inspect", is_flag=True, help="In a window, pause the host and look back.")
 @click.option(
@@ -65,9 +75,11 @@ WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
     metavar="SECONDS",
     help="Disconnect a host that is silent for this long.",
 )
-@click.option("--once", is_flag=True, help="Without a window: end when the first host has left.")
+@click.option("--once", is_flag=True, help="End when the first host has left.")
 @display_options
+@click.pass_context
 def serve(
+    context: click.Context,
     port: int | None,
     unix: str | None,
     stdio: bool,
@@ -100,6 +112,7 @@ def serve(
         raise click.UsageError(
             "stdin must be for words or for the joystick, not both; give --joystick a FIFO"
         )
+    refuse_options_without_effect(context)
     refuse_outputs(force, record, pictures=[output, snapshot])
     display = display_asked_for(configuration, start, table)
 
@@ -148,6 +161,16 @@ def serve(
                     server.finish(lambda: run.ends)
             if stdio:
                 tell_the_end(server.session)
+
+
+def refuse_options_without_effect(context: click.Context) -> None:
+    """Refuse options that would do nothing beside the others."""
+    for option, other in WITHOUT_EFFECT:
+        is_given = context.get_parameter_source(option) is ParameterSource.COMMANDLINE
+        if is_given and context.params[other]:
+            raise click.UsageError(
+                f"--{option} must not be with --{other}, where it has no effect; leave one out"
+            )
 
 
 def watch(server: Server, run: Run, obey: Callable[[], object], inspected: Replay | None) -> None:

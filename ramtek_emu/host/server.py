@@ -436,19 +436,24 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
     """
     # The socket's file gets the permissions of the socket: set them before the file exists.
     os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
-    hidden = os.path.join(os.path.dirname(path), f".{secrets.token_hex(4)}")
-    listener.bind(hidden)
+    folder = os.open(os.path.dirname(path) or ".", os.O_PATH)
+    # A socket's name is short: name the folder by its descriptor, so that each path that fits can be taken.
+    hidden = f"/proc/self/fd/{folder}/.{secrets.token_hex(4)}"
     try:
-        listener.listen(HOSTS_IN_LINE)
-        remove_stale_socket(path)
-        # Unlike a renaming, a link replaces no file that another server has made meanwhile.
+        listener.bind(hidden)
         try:
-            os.link(hidden, path)
-        except FileExistsError:
-            raise taken(path, "exists") from None
-        return os.lstat(path)
+            listener.listen(HOSTS_IN_LINE)
+            remove_stale_socket(path)
+            # Unlike a renaming, a link replaces no file that another server has made meanwhile.
+            try:
+                os.link(hidden, path)
+            except FileExistsError:
+                raise taken(path, "exists") from None
+            return os.lstat(path)
+        finally:
+            os.unlink(hidden)
     finally:
-        os.unlink(hidden)
+        os.close(folder)
 
 
 def remove_stale_socket(path: str) -> None:
