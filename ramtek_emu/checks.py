@@ -112,8 +112,6 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> Colors:
         raise ColorsError(
             f"colors must be an (n, 3) array of red, green, blue, not of shape {array.shape}; reshape it"
         )
-    # No table is larger.
-    entries = min(entries, 4096)
     if len(array) > entries:
         raise ColorsError(
             f"colors must be at most {entries}, as the table's entries, not {len(array)}; send fewer"

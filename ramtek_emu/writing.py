@@ -51,7 +51,8 @@ class Output:
         self.path = Path(os.path.realpath(path))
         try:
             # Programs that write the same path at once have temporary files of their own.
-            self._beside = self.path.with_name(f".{self.path.name[:100]}.{token_hex(4)}.part")
+            # A name of so few letters, of up to four bytes, leaves room for the rest.
+            self._beside = self.path.with_name(f".{self.path.name[:50]}.{token_hex(4)}.part")
             # The end of the with statement closes it.
             self._file = open(self._beside, "xb")  # noqa: SIM115
         except OSError as error:

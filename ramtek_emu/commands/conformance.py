@@ -46,8 +46,10 @@ def conformance(
     if command:
         claims = [claim for claim in claims if not claim.in_process]
     if not claims:
+        testable = " that a pipe can test" if command else ""
         raise click.UsageError(
-            f"--only must be the key of a claim, not {' and '.join(only)}; see the first column of the table"
+            f"--only must be the key of a claim{testable}, not {' and '.join(only)}; "
+            "see the first column of the table"
         )
     run = partial(failure_on, command=command, seconds=seconds) if command else failure_here
     with ThreadPoolExecutor(os.cpu_count() if command else 1) as pool:

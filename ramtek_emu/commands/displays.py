@@ -32,8 +32,7 @@ Function = TypeVar("Function", bound=Callable[..., object])
 def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
     """The names of configurations, for completion in a shell, in upper or lower case."""
     names = [name.lower().replace("_", "-") for name in CONFIGURATIONS]
-    # The longer names begin with the shorter: offer them when a name is complete.
-    names += [f"{name}-monochrome" for name in names if incomplete.lower().replace("_", "-").startswith(name)]
+    names += [f"{name}-monochrome" for name in names]
     return [name for name in names if name.startswith(incomplete.lower().replace("_", "-"))]
 
 
@@ -184,14 +183,9 @@ class Run:
         return False
 
     def attempt(self, write: Callable[[], object]) -> bool:
-        """Write an output, and return True; if that fails, report the reason and return False.
-
-        A film is written while its stream is read. If the stream fails, MissingInputError is raised.
-        """
+        """Write an output, and return True; if that fails, report the reason and return False."""
         try:
             write()
-        except MissingInputError:
-            raise
         except RamtekError as failure:
             self.fail(failure)
             return False
@@ -252,8 +246,6 @@ def running(
 
 def open_stream(path: str) -> BinaryIO:
     """The input file, stdin for `-`; MissingInputError if it cannot be read."""
-    if path == "":
-        raise click.UsageError("an input must be the name of a file, not ''; give it one")
     if path == "-":
         if sys.stdin is None:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
@@ -290,10 +282,7 @@ def read_stream(path: str, configuration: Configuration) -> Stream:
         )
     words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
     stream = Stream(configuration, words)
-    if rest := len(words) - int(stream.ends[-1]):
-        tell(f"the stream {path} ends within an instruction: its {rest} words were dropped")
-    if len(data) % 2:
-        tell(f"the stream {path} ends within a word: its last byte was dropped")
+    tell_incomplete(f"the stream {path}", len(words) - int(stream.ends[-1]), len(data) % 2 != 0)
     return stream
 
 
@@ -341,27 +330,26 @@ def show(
         monitor.close()
 
 
-def tell_unexecuted(words: int) -> None:
-    """Report words that had arrived when the display ended."""
-    if words:
-        things = "word of the host arrived and was" if words == 1 else "words of the host arrived and were"
-        tell(f"{words:,} {things} not executed")
-
-
-def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
-    """Report words that were not executed: illegal words, instructions without effect, an incomplete end.
-
-    With `is_cut_off`, a signal ended the stream.
-    """
-    end = "a signal ended the stream" if is_cut_off else "the stream ends"
+def tell_the_end(session: HostSession) -> None:
+    """Report words that were not executed: illegal words, instructions without effect, an incomplete end."""
     processor = session.display.processor
-    illegal, unknown = processor.illegal_words, processor.unimplemented
-    if illegal:
-        tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
-    if unknown:
-        plural = "instruction is" if unknown == 1 else "instructions are"
-        tell(f"{unknown} {plural} known by name only: without effect")
-    if rest := session.display.decoder.pending_words:
-        tell(f"{end} within an instruction: its {rest} words were dropped")
-    if session.odd_byte:
-        tell(f"{end} within a word: its last byte was dropped")
+    if illegal := processor.illegal_words:
+        tell(f"words that begin no instruction, skipped: {illegal}")
+    if unknown := processor.unimplemented:
+        tell(f"instructions known by name only, without effect: {unknown}")
+    tell_unexecuted(session)
+    tell_incomplete("the stream", session.display.decoder.pending_words, session.odd_byte != b"")
+
+
+def tell_unexecuted(session: HostSession) -> None:
+    """Report that the display has ended within the words of a host."""
+    if session.unexecuted:
+        tell("the display ended before it had executed all words of the host")
+
+
+def tell_incomplete(stream: str, words: int, has_odd_byte: bool) -> None:
+    """Report the words of an instruction, and the byte, that begin at the end of a stream."""
+    if words:
+        tell(f"{stream} ends within an instruction: its {words} words were dropped")
+    if has_odd_byte:
+        tell(f"{stream} ends within a word: its last byte was dropped")

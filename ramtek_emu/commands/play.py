@@ -19,10 +19,8 @@ from ramtek_emu.commands.displays import (
     show,
     tell,
     tell_the_end,
-    tell_unexecuted,
     unreadable,
 )
-from ramtek_emu.errors import MissingInputError
 
 if TYPE_CHECKING:
     from ramtek_emu.arrays import Colors
@@ -99,7 +97,6 @@ def play(
     display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.host import pipe
-    from ramtek_emu.host.port import waiting_bytes
 
     number = file.fileno()
     with file, running(display, output, snapshot, record, force) as run:
@@ -108,36 +105,26 @@ def play(
             try:
                 return os.read(number, most) if run.wait(number) else b""
             except OSError as cause:
-                raise unreadable(cause) from None
-
-        def read_for_window(most: int) -> bytes:
-            # The window stays open with the words that were read.
-            try:
-                return read(most)
-            except MissingInputError as failure:
-                run.fail(failure)
+                # The window stays open, and outputs are written, with the words that were read.
+                run.fail(unreadable(cause))
                 return b""
 
         if in_window:
-            paced: pipe.Read = read_for_window
+            shown: pipe.Read = read
             if loads_per_second is not None:
-                paced = pipe.paced(paced, loads_per_second, display.configuration)
-            with pipe.PipeServer(display, paced, record=run.record) as server:
+                shown = pipe.paced(read, loads_per_second, display.configuration)
+            with pipe.PipeServer(display, shown, record=run.record) as server:
                 show(display, run, server.serve_for)
             return
         server = pipe.PipeServer(display, read, record=run.record)
-        session = server.session
-        waiting = 0
         if film is None:
             server.serve(lambda: run.ends)
         else:
             is_cut = pipe.is_load if every is None else pipe.every(every)
-            cut = pipe.CutReader(read, display.configuration, is_cut)
-            fields = pipe.stream_fields(session, cut, lambda: run.ends)
+            cut = pipe.stream_pieces(read, display.configuration, is_cut)
+            fields = pipe.stream_fields(server.session, cut, lambda: run.ends)
             write_fields(film, fields, run, fps or FRAMES_PER_SECOND, not once, force)
-            waiting = cut.waiting
-        tell_the_end(session, is_cut_off=run.ends)
-        tell_unexecuted(session.unexecuted + (waiting + waiting_bytes(number)) // 2)
+        tell_the_end(server.session)
     if run.signal:
         raise Ended(run.signal)
 
@@ -155,10 +142,7 @@ def refuse_film(film: str | None, every: int | None, fps: float | None, once: bo
 
 
 def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loop: bool, force: bool) -> None:
-    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on.
-
-    Raises MissingInputError if the stream cannot be read to its end.
-    """
+    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on."""
     from ramtek_emu.films import write_film
 
     if run.attempt(lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import select
-import stat
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -51,13 +50,10 @@ WITHOUT_EFFECT: Final = (
     ("once", "inspect"),
 )
 """Options that have no effect beside the second option."""
-STEP_SECONDS: Final = 0.1
+STEP_SECONDS: Final = 0.02
+"""How long a line for the joystick, or a signal, may be unnoticed while no words arrive."""
 WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
 """The most bytes that any pipe takes without waiting, if it can be written."""
-MOST_WRITTEN: Final = 1 << 16
-"""The most bytes that are written at once to a pipe that never waits."""
-JOYSTICK_SECONDS: Final = 0.02
-"""How long a line for the joystick may wait while no words arrive."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -123,7 +119,6 @@ def serve(
 
     from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.pipe import PipeServer
-    from ramtek_emu.host.port import waiting_bytes
     from ramtek_emu.host.server import TcpServer, UnixServer
 
     with running(display, output, snapshot, record, force) as run:
@@ -162,14 +157,10 @@ def serve(
             else:
                 while not run.ends and not ((once or stdio) and server.served):
                     obey()
-                    server.step(STEP_SECONDS if joystick is None else JOYSTICK_SECONDS)
+                    server.step(STEP_SECONDS)
                 if isinstance(server, PipeServer):
                     server.finish(lambda: run.ends)
-            rest = 0
-            if stdio:
-                tell_the_end(server.session, is_cut_off=run.ends)
-                rest = waiting_bytes(sys.stdin.fileno()) // 2 if sys.stdin is not None else 0
-            tell_unexecuted(server.unexecuted + rest)
+            (tell_the_end if stdio else tell_unexecuted)(server.session)
 
 
 def refuse_options_without_effect(context: click.Context) -> None:
@@ -217,26 +208,16 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
             return os.read(stdin, most) if run.wait(stdin) else b""
         return b""
 
-    replies, at_once = replies_to(sys.stdout.fileno())
+    replies = os.dup(sys.stdout.fileno())
     # Redirect all printed text to stderr, so that it does not mix with the words.
     os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
 
     def write(data: bytes) -> None:
         view = memoryview(data)
         while view and run.wait(replies, to_write=True):
-            with suppress(BlockingIOError):
-                view = view[os.write(replies, view[:at_once]) :]
+            view = view[os.write(replies, view[:WRITTEN_AT_ONCE]) :]
 
     return read, write
-
-
-def replies_to(stdout: int) -> tuple[int, int]:
-    """A descriptor for replies, and how many bytes it takes without waiting once it can be written."""
-    with suppress(OSError):
-        if sys.platform == "linux" and stat.S_ISFIFO(os.fstat(stdout).st_mode):
-            # A pipe that is opened anew can be set not to wait, and waits as before for other programs.
-            return os.open(f"/proc/self/fd/{stdout}", os.O_WRONLY | os.O_NONBLOCK), MOST_WRITTEN
-    return os.dup(stdout), WRITTEN_AT_ONCE
 
 
 def announce(address: str, host: str) -> None:

@@ -6,10 +6,8 @@ A function returns the failure as text, or "" if the claim holds.
 from __future__ import annotations
 
 import subprocess
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from threading import Timer
 
 import numpy as np
 
@@ -96,37 +94,21 @@ def failure_of_the_text(claim: Claim) -> str:
 def failure_on(claim: Claim, command: Sequence[str], seconds: float) -> str:
     """The failure of a claim on a command, which gets the words on stdin and replies on stdout.
 
-    `{}` in the command is the name of the display. A claim that is cut is sent once more, in writes of a
-    byte. A process that has not ended after `seconds` is killed. OSError if the command cannot be started.
+    `{}` in the command is the name of the display. A process that has not ended after `seconds` is killed.
+    OSError if the command cannot be started.
     """
-    data = claim.words.astype("<u2").tobytes()
-    sent = [[data]] if claim.cut != "every" else [[data], [data[n : n + 1] for n in range(len(data))]]
-    for writes in sent:
-        given, deadline = b"", time.monotonic() + seconds
-        with subprocess.Popen(
+    try:
+        done = subprocess.run(
             [part.replace("{}", claim.display) for part in command],
-            stdin=subprocess.PIPE,
+            input=claim.words.astype("<u2").tobytes(),
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            bufsize=0,
-        ) as process:
-            assert process.stdin is not None
-            # A process that does not read is killed while this one writes.
-            timer = Timer(seconds, process.kill)
-            timer.start()
-            with suppress(BrokenPipeError):
-                for write in writes[:-1]:
-                    process.stdin.write(write)
-            with suppress(subprocess.TimeoutExpired):
-                given, _ = process.communicate(writes[-1], timeout=seconds)
-            timer.cancel()
-            process.kill()
-        if time.monotonic() > deadline:
-            return f"the emulator did not end in {seconds:g} s"
-        failure = difference(claim, np.frombuffer(given, "<u2", len(given) // 2))
-        if failure:
-            return failure
-    return ""
+            timeout=seconds,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return f"the emulator did not end in {seconds:g} s"
+    return difference(claim, np.frombuffer(done.stdout, "<u2", len(done.stdout) // 2))
 
 
 def difference(claim: Claim, given: Words) -> str:

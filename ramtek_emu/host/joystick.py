@@ -50,10 +50,9 @@ def actions(line: str, joystick: Joystick, reset: Action) -> list[Action]:
                 move = joystick.move_to if kind == "cursor" else joystick.move_by
                 asked.append(partial(move, int(x), int(y)))
             case _:
-                shown = line if len(line) <= 60 else f"{line[:60]}..."
                 raise ValueError(
                     "a joystick line must hold cursor X Y, by X Y, enter, track on, track off or reset, "
-                    f"not {shown!r}; write it so"
+                    f"not {line[:60]!r}; write it so"
                 )
         words = rest
     return asked

@@ -31,23 +31,19 @@ Write = Callable[[bytes], object]
 """A function that writes all of the bytes; ConnectionError if the pipe has no reader."""
 
 
-def dropped(_: bytes) -> None:
-    """Drop replies."""
-
-
 class PipeServer(Server):
     """A display that serves a single host, which is connected by two pipes.
 
     `serve` waits for the host, as a command does. `step` does not, as with other servers: two threads copy
     the bytes of the pipes to a socket and from it, and the display serves the other end of the socket.
+    Without `write`, replies are dropped.
     """
 
     def __init__(
-        self, display: Ramtek9300, read: Read, write: Write = dropped, record: Record | None = None
+        self, display: Ramtek9300, read: Read, write: Write = lambda _: None, record: Record | None = None
     ) -> None:
         super().__init__(display, None, "", math.inf, record)
         self._read, self._write = read, write
-        self._read_bytes = 0
 
     def serve(self, ends: Callable[[], bool]) -> None:
         """Execute the host's words until it leaves or `ends()` is true, and write the replies at once."""
@@ -57,12 +53,6 @@ class PipeServer(Server):
                     return
                 with suppress(ConnectionError):
                     self._write(reply)
-
-    @property
-    def unexecuted(self) -> int:
-        """The number of words that were read and are not executed."""
-        copied = 0 if self._client is None else self._read_bytes - self._client.read_bytes
-        return copied // 2 + self.session.unexecuted
 
     def finish(self, ends: Callable[[], bool]) -> None:
         """Wait until the replies to a host that has left are written, or until `ends()` is true."""
@@ -85,7 +75,6 @@ class PipeServer(Server):
     def _copy_words(self) -> None:
         with suppress(OSError):
             while data := self._read(READ_BYTES):
-                self._read_bytes += len(data)
                 self._copied.sendall(data)
             self._copied.shutdown(socket.SHUT_WR)
 
@@ -96,36 +85,27 @@ class PipeServer(Server):
                     self._write(data)
 
 
-class CutReader:
+def stream_pieces(
+    read: Read, configuration: Configuration, is_cut: Callable[[int], bool]
+) -> Iterator[tuple[bytes, bool]]:
     """The pieces of a stream, which is cut after the instructions that `is_cut` chooses.
 
-    `is_cut` is called with the opcode of each instruction, in order. A row of illegal words is an
-    instruction, as in a listing; it ends where the reads of the stream cut it.
+    Yields the bytes of each piece, and whether it ends with a chosen instruction. `is_cut` is called with the
+    opcode of each instruction, in order. A row of illegal words is an instruction, as in a listing; it ends
+    where the reads of the stream cut it.
     """
-
-    def __init__(self, read: Read, configuration: Configuration, is_cut: Callable[[int], bool]) -> None:
-        self.waiting = 0
-        """The number of bytes that were read and not yielded."""
-        self._read = read
-        self._is_cut = is_cut
-        self._decoder = Decoder(configuration)
-
-    def __iter__(self) -> Iterator[tuple[bytes, bool]]:
-        """Yields the bytes of each piece, and whether it ends with a chosen instruction."""
-        odd_byte = b""
-        while data := self._read(READ_BYTES):
-            # A word may have begun in the bytes before, and an instruction in the words before.
-            whole, odd, begun = odd_byte + data, len(odd_byte), 0
-            odd_byte = whole[len(whole) & ~1 :]
-            for words in self._decoder.split(np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16)):
-                if not self._decoder.is_within_row and self._is_cut(words.item(0) >> 8):
-                    end = 2 * self._decoder.used - odd
-                    self.waiting = len(data) - end
-                    yield data[begun:end], True
-                    begun = end
-            if begun < len(data):
-                self.waiting = 0
-                yield data[begun:], False
+    decoder, odd_byte = Decoder(configuration), b""
+    while data := read(READ_BYTES):
+        # A word may have begun in the bytes before, and an instruction in the words before.
+        whole, odd, begun = odd_byte + data, len(odd_byte), 0
+        odd_byte = whole[len(whole) & ~1 :]
+        for words in decoder.split(np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16)):
+            if not decoder.is_within_row and is_cut(words.item(0) >> 8):
+                end = 2 * decoder.used - odd
+                yield data[begun:end], True
+                begun = end
+        if begun < len(data):
+            yield data[begun:], False
 
 
 def is_load(opcode: int) -> bool:
@@ -152,28 +132,28 @@ def paced(read: Read, loads_per_second: int, configuration: Configuration) -> Re
     before a load, so a field had at most one load).
     """
 
-    def pieces() -> Iterator[bytes]:
+    def waited_for() -> Iterator[bytes]:
         due = time.monotonic()
-        for data, ends_in_load in CutReader(read, configuration, is_load):
+        for data, ends_in_load in stream_pieces(read, configuration, is_load):
             if ends_in_load:
                 time.sleep(max(0.0, due - time.monotonic()))
                 due = max(due, time.monotonic()) + 1 / loads_per_second
             yield data
 
-    left = pieces()
+    left = waited_for()
     return lambda _: next(left, b"")
 
 
 def stream_fields(
-    session: HostSession, read: CutReader, ends: Callable[[], bool] = lambda: False
+    session: HostSession, cut: Iterator[tuple[bytes, bool]], ends: Callable[[], bool] = lambda: False
 ) -> Iterator[Colors]:
     """The fields of a stream after each cut, (lines, elements, 3) uint8, and at its end, if it changed.
 
-    The stream is executed when fields are taken. When `ends()` is true, the rest of the words is not
-    executed. Replies are dropped.
+    `cut` are its `stream_pieces`. The stream is executed when fields are taken. When `ends()` is true, the
+    rest of the words is not executed. Replies are dropped.
     """
     last: Colors | None = None
-    for data, is_cut in read:
+    for data, is_cut in cut:
         if any(ends() for _ in session.feed(data)):
             break
         if is_cut:

@@ -31,7 +31,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from typing import Final, TypeVar
+from typing import Final, Self
 
 import numpy as np
 
@@ -46,7 +46,6 @@ from ramtek_emu.host.port import (
     prepared,
     read_socket,
     ready,
-    waiting_bytes,
     write_socket,
 )
 from ramtek_emu.instruction_set.instruction import NO_WORDS
@@ -179,10 +178,6 @@ class Client:
         self.idle_seconds = idle_seconds
         self._replies: deque[bytes] = deque()
         self._pending: Iterator[bytes] | None = None
-        self.read_bytes = 0
-        """The number of bytes that were read."""
-        self._packet_bytes = 0
-        """The bytes of the packet that is executed. The packet stays in the socket until then."""
         self._sent_all = False
         self._last_transfer = time.monotonic()
 
@@ -206,12 +201,6 @@ class Client:
     def deadline(self) -> float:
         """The time when the host is disconnected, unless something is transferred before."""
         return self._last_transfer + self.idle_seconds
-
-    @property
-    def unexecuted(self) -> int:
-        """The number of the host's words that have arrived and are not executed."""
-        data = waiting_bytes(self.socket) - self._packet_bytes + len(self.session.odd_byte)
-        return data // 2 + self.session.unexecuted
 
     def step(self, seconds: float = 0.0) -> bool:
         """Read, execute and reply once, waiting up to `seconds`; returns whether anything was done."""
@@ -244,11 +233,9 @@ class Client:
             data = b""
         if data is None:
             return
-        self.read_bytes += len(data)
         self._sent_all = not data
         if has_packets:
-            # A packet is a write of the host: round it down to whole words.
-            self._packet_bytes = len(data)
+            # A packet is a write of the host: round it down to whole words. It is taken when it is executed.
             data = data[: len(data) & ~1]
         if not self._sent_all:
             self._pending = self.session.feed(data)
@@ -269,10 +256,9 @@ class Client:
                 self._replies.append(reply)
             elif reply is None:
                 self._pending = None
-                if self._packet_bytes:
+                if keeps_writes(self.socket):
                     # The packet is executed: take it out of the socket.
                     self._receive()
-                    self._packet_bytes = 0
         if has_work or self.session.is_stopped:
             # The display was working, or a program stops the host: this was no silence of the host.
             self._last_transfer = time.monotonic()
@@ -289,8 +275,6 @@ class Client:
 IDLE_SECONDS: Final = 600.0
 HOSTS_IN_LINE: Final = 128
 """Limit: the most hosts that wait in line."""
-
-Self = TypeVar("Self", bound="Server")
 
 
 class Server:
@@ -319,11 +303,6 @@ class Server:
         """Whether a host is being served."""
         return self._client is not None
 
-    @property
-    def unexecuted(self) -> int:
-        """The number of words of the host that is served which have arrived and are not executed."""
-        return 0 if self._client is None else self._client.unexecuted
-
     def step(self, seconds: float = 0.0) -> bool:
         """Serve once, waiting up to `seconds` for an event; returns whether anything was done."""
         if self._client is None:
@@ -351,7 +330,7 @@ class Server:
         if self._listener is not None:
             self._listener.close()
 
-    def __enter__(self: Self) -> Self:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -402,7 +381,6 @@ class TcpServer(Server):
                 f"a server must have a free port, and {host}:{port} cannot be opened ({reason_of(cause)}); "
                 "choose another, or 0 for any"
             ) from cause
-        self.host = host
         self.port: int = listener.getsockname()[1]
         address = f"tcp://{f'[{host}]' if ':' in host else host}:{self.port}"
         super().__init__(display, listener, address, idle_seconds, record)

@@ -148,8 +148,6 @@ def test_a_snapshot_is_a_picture_that_others_read(tmp_path: Path) -> None:
     for other in (tmp_path / "none.png", tmp_path, "a\0b"):
         with pytest.raises(MissingInputError):
             read_snapshot(other)
-    with pytest.raises(SnapshotError, match="a snapshot must be of a Ramtek9300, not of a str; give the"):
-        write_snapshot(str(tmp_path / "other.png"), display)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("text", ["", "null", "[" * 100_000, "{}", "9" * 5000, '{"all":1,"all":2}', "NaN"])

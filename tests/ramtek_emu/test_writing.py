@@ -105,6 +105,12 @@ def test_an_output_is_written_piece_by_piece_and_appears_when_kept(tmp_path: Pat
     assert os.listdir(tmp_path) == ["words.ramtek"]
 
 
+def test_a_file_may_have_the_longest_name(tmp_path: Path) -> None:
+    path = tmp_path / ("\u4e2d" * 85)
+    write_atomically(path, b"new", overwrite=False)
+    assert path.read_bytes() == b"new"
+
+
 def test_a_file_that_came_to_exist_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "words.ramtek"
     with Output(path, overwrite=False) as output:

@@ -49,12 +49,12 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
     assert run("play", "-", "--start", first, *arguments, "--force").returncode == 2
 
 
-UNEXECUTED = r"[0-9],[0-9]{3} words of the host arrived and"
+UNEXECUTED = "the display ended before it had executed all words of the host"
 ATTACKS = (
     (row_of("serve --stdio -o", unread), signal.SIGHUP, ""),
-    (row_of("serve --port", filling), signal.SIGINT, UNEXECUTED),
+    (row_of("serve --port", filling), signal.SIGINT, ""),
     (row_of("serve --stdio -o", filling), signal.SIGTERM, UNEXECUTED),
-    (row_of("serve --unix", filling), signal.SIGHUP, UNEXECUTED),
+    (row_of("serve --unix", filling), signal.SIGHUP, ""),
     (row_of("play", recording), signal.SIGHUP, ""),
     (row_of("list", printing), signal.SIGTERM, ""),
 )
@@ -83,7 +83,7 @@ def test_a_signal_ends_a_command_within_a_long_instruction(tmp_path: Path) -> No
         host.send(np.concatenate((drawn, long)))
         assert host.receive(1) == 0
         said = ended(process, signal.SIGTERM)
-    assert f"{len(long):,} words of the host arrived and were not executed" in said
+    assert UNEXECUTED in said
     assert names[2].read_bytes() == stream(drawn)
     half_drawn = read_snapshot(names[1])
     lines = (half_drawn.words == 5).all(axis=1).tolist()
@@ -192,7 +192,7 @@ def test_the_inspector_hints_at_the_end_of_a_dark_stream_and_with_its_picture(
             replay.go_to(number)
             hints.append([hint(seconds) for seconds in (1.0, 3.0)][1])
 
-    monkeypatch.setattr(Inspector, "run", look)
+    monkeypatch.setattr("ramtek_emu.inspection.inspector.Inspector.run", look)
     CliRunner().invoke(ramtek, ["inspect", str(path)], catch_exceptions=False)
     assert hints[:2] == ["", ""]
     drawn = CliRunner().invoke(ramtek, ["inspect", str(path), "-o", str(tmp_path / "a.png")])

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from ramtek_emu import FAMILY, Ramtek9300, instructions
 from ramtek_emu.arrays import Colors
 from ramtek_emu.host.pipe import (
-    CutReader,
     PipeServer,
     every,
     is_load,
     paced,
     stream_fields,
+    stream_pieces,
 )
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
@@ -34,16 +34,6 @@ from tests.ramtek_emu.strategies import SMALL
 def pop_of(pieces: list[bytes]) -> Callable[[int], bytes]:
     """A `read` that returns the last of the pieces, and ignores its argument."""
     return lambda _: pieces.pop()
-
-
-def test_words_that_wait_for_a_place_are_counted_as_unexecuted() -> None:
-    pieces = [b"", *[b"\0" * 60_000] * 20]
-    with PipeServer(Ramtek9300(), pop_of(pieces)) as pipe:
-        pipe.step()
-        # The rest does not fit into the socket, and is not read.
-        until(lambda: len(pieces) > 0 and pipe.unexecuted == 30_000 * (21 - len(pieces)) > 60_000)
-        until(lambda: not pipe.step() and pipe.served == 1)
-        assert pipe.unexecuted == 0
 
 
 def test_the_last_replies_to_a_host_are_written_before_the_end() -> None:
@@ -161,11 +151,6 @@ def seen_load(number: int) -> bytes:
     return stream(instructions.load_entries(0, [(20 * number, 0, 0)]))
 
 
-def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[int], bool]) -> CutReader:
-    """A cut reader of a stream that arrives in pieces."""
-    return CutReader(in_pieces(data, cuts), SMALL, is_cut)
-
-
 def fields_by_instruction(data: bytes) -> tuple[list[Colors], list[str]]:
     """The fields before a stream and after each of its instructions, with the names of the instructions."""
     display = Ramtek9300(SMALL)
@@ -195,21 +180,20 @@ def test_a_film_of_a_stream_has_the_fields_after_its_instructions(
     expected = [fields[number] for number in chosen]
     if not expected or not np.array_equal(expected[-1], fields[-1]):
         expected.append(fields[-1])
-    read = cut_read(data, cuts, every(count) if count else is_load)
-    assert np.array_equal(list(stream_fields(HostSession(Ramtek9300(SMALL)), read)), expected)
+    cut = stream_pieces(in_pieces(data, cuts), SMALL, every(count) if count else is_load)
+    assert np.array_equal(list(stream_fields(HostSession(Ramtek9300(SMALL)), cut)), expected)
 
 
 LOADS = [seen_load(number) for number in range(1, 7)]
 
 
-def test_a_film_that_is_ended_has_the_field_at_its_end_and_counts_the_words_that_wait() -> None:
+def test_a_film_that_is_ended_has_the_field_at_its_end() -> None:
     session = HostSession(Ramtek9300(SMALL))
-    read = cut_read(b"".join(LOADS), [], every(1))
+    cut = stream_pieces(in_pieces(b"".join(LOADS), []), SMALL, every(1))
     fields: list[Colors] = []
-    for field in stream_fields(session, read, lambda: len(fields) == 3):
+    for field in stream_fields(session, cut, lambda: len(fields) == 3):
         fields.append(field)
     assert len(fields) == 4
     assert np.array_equal(fields[-1], session.display.field())
     # The fourth load was executed before the end was noticed.
-    assert read.waiting == len(LOADS[4]) + len(LOADS[5])
-    assert session.unexecuted == 0
+    assert 2 * session.display.words_received == sum(map(len, LOADS[:4]))

@@ -331,21 +331,7 @@ def test_the_last_packets_of_a_host_that_left_without_its_replies_are_drawn_once
             host.close()
             until(lambda: not client.step() and client.ended)
             assert client.session.display.words[5, 5] == 7
-            assert client.read_bytes == 14 + len(more) + len(DOT)
-
-
-@pytest.mark.usefixtures("one_instruction_a_piece")
-def test_the_words_that_arrived_and_were_not_executed_are_counted() -> None:
-    with host_and_client() as (host, client):
-        host.send(DOT + packet("0700 0902 0044"))
-        host.send(packet("0700 0700"))
-        counts = [client.unexecuted]
-        while client.unexecuted > 2:
-            client.step()
-            counts.append(client.unexecuted)
-    # The packet that was not read has two words. The last two words of the other begin an instruction.
-    assert counts == [12, 5, 4, 2]
-    assert client.session.unexecuted == 0
+            assert 2 * client.session.display.words_received == 14 + len(more) + len(DOT)
 
 
 @pytest.mark.usefixtures("one_instruction_a_piece")
