@@ -73,54 +73,62 @@ class FrameBuffer:
 
         With `dots`, only words whose dot is true are written.
         """
-        along, runs = order.inner_and_outer(window)
-        size = along * runs
-        if not size:
+        if window.is_empty:
             return start
-        inner, outer = order.entry(window, start)
-        turns = len(words) // size - 1
-        if turns > 0 and dots is None and min(inner, outer) >= 0:
-            # Each turn around the window overwrites the turn before: count them all, and write the last.
+        if len(words) > 2 * window.width * window.height:
+            words, dots = self._without_overwritten_turns(window, order, start, words, enable, dots)
+        parts, end = blocks(window, order, start, len(words))
+        for point, shape, part in parts:
+            chosen = None if dots is None else dots[part].reshape(shape)
+            self.write_block(point, order, words[part].reshape(shape), enable, chosen)
+        return end
+
+    def _without_overwritten_turns(
+        self,
+        window: Window,
+        order: ScanOrder,
+        start: Point,
+        words: Words,
+        enable: WriteEnable,
+        dots: Dots | None,
+    ) -> tuple[Words, Dots | None]:
+        """Words and dots with a single turn around the window for all whole turns; counts the others."""
+        size, first = window.width * window.height, order.words_to_corner(window, start)
+        count = max(0, len(words) - first) // size
+        if not count:
+            return words, dots
+        dots = np.ones(len(words), np.bool_) if dots is None else dots
+        end = first + count * size
+        turns = dots[first:end].reshape(count, size)
+        is_written = turns.any(axis=0)
+        if enable.mask & self._every_plane:
             seen = window.intersection(self.window).intersection(enable.window)
-            if enable.mask & self._every_plane:
-                self.written += turns * seen.width * seen.height
-            words = words[turns * size :]
-        count, rest = divmod(len(words), along)
-        if dots is None and inner == rest == 0 and 0 <= outer < outer + count <= runs:
-            # The common case: whole lines of the window, without going around it.
-            corner = order.corner(window)
-            entered = order.stepped(corner, 0, outer)
-            self.write_block(entered, order, words.reshape(count, along), enable)
-            return order.stepped(corner, 0, (outer + count) % runs)
-        if len(words) < 2 * size:
-            for point, shape, part in blocks(window, order, start, len(words)):
-                chosen = None if dots is None else dots[part].reshape(shape)
-                self.write_block(point, order, words[part].reshape(shape), enable, chosen)
-        else:
-            elements, lines = order.places(window, start, len(words))
-            written = slice(None) if dots is None else dots
-            self.write_points(elements[written], lines[written], words[written], enable)
-        return order.after(window, start, len(words))
+            overwritten = (turns.sum(axis=0) - is_written).reshape(order.inner_and_outer(window)[::-1])
+            self.written += int(overwritten[part_of(window, seen, order)].sum())
+        last = words[first:end].reshape(count, size)[count - 1 - turns[::-1].argmax(axis=0), np.arange(size)]
+        return (
+            np.concatenate((words[:first], last, words[end:])),
+            np.concatenate((dots[:first], is_written, dots[end:])),
+        )
 
     def read_scan(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
         """`count` words along the scan of a window from `start` on, and the point after the last word."""
-        size = window.width * window.height
-        around = size > 0 and min(order.entry(window, start)) >= 0
-        words = np.zeros(min(count, size) if around else count, np.uint16)
-        if size and len(words) > size:
-            elements, lines = order.places(window, start, count)
-            inside = inside_of(self.window, elements, lines)
-            words[inside] = self._words[lines[inside], elements[inside]]
-        elif size:
-            for point, shape, part in blocks(window, order, start, len(words)):
-                place = order.block_window(point, shape[1], shape[0])
-                seen = place.intersection(self.window)
-                if not seen.is_empty:
-                    memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
-                    words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
-        # From a start within the window on, the words repeat.
-        words = np.resize(words, count) if around else words
-        return words, order.after(window, start, count) if size else start
+        if window.is_empty:
+            return np.zeros(count, np.uint16), start
+        # From the corner on, the words repeat with every turn around the window: read the first turn alone.
+        size, first = window.width * window.height, order.words_to_corner(window, start)
+        repeated = max(0, count - first - size) // size * size
+        words = np.zeros(count - repeated, np.uint16)
+        parts, end = blocks(window, order, start, len(words))
+        for point, shape, part in parts:
+            place = order.block_window(point, shape[1], shape[0])
+            seen = place.intersection(self.window)
+            if not seen.is_empty:
+                memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
+                words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
+        if repeated:
+            words = np.concatenate((words[:first], np.resize(words[first : first + size], count - first)))
+        return words, end
 
     def write_block(
         self,

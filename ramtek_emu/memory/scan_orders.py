@@ -26,9 +26,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
-from ramtek_emu.arrays import Numbers, Raster, Scalar
+from ramtek_emu.arrays import Raster, Scalar
 
 
 class Point(NamedTuple):
@@ -124,27 +122,11 @@ class ScanOrder(NamedTuple):
             inner, outer = 0, outer + 1
         return inner, 0 if outer >= runs else outer
 
-    def after(self, window: Window, start: Point, count: int) -> Point:
-        """The point after `count` words from `start` on."""
-        if not count:
-            return start
+    def words_to_corner(self, window: Window, start: Point) -> int:
+        """The number of words from `start` on until the scan comes to the corner."""
         inner, outer = self.entry(window, start)
         along, runs = self.inner_and_outer(window)
-        more, rest = divmod(count - (along - inner), along)
-        inner, outer = (inner + count, outer) if more < 0 else (rest, outer + 1 + more)
-        return self.stepped(self.corner(window), inner, outer % runs if outer >= 0 else outer)
-
-    def places(self, window: Window, start: Point, count: int) -> tuple[Numbers, Numbers]:
-        """The elements and the lines of `count` words from `start` on."""
-        inner, outer = self.entry(window, start)
-        along, runs = self.inner_and_outer(window)
-        more, inners = np.divmod(np.arange(count) - (along - inner), along)
-        in_first = more < 0
-        inners[in_first] = inner + np.flatnonzero(in_first)
-        outers = outer + np.where(in_first, 0, 1 + more)
-        outers = np.where(outers < 0, outers, outers % runs)
-        places: tuple[Any, Any] = self.stepped(self.corner(window), inners, outers)
-        return places
+        return (runs - outer) * along - inner
 
     def block_window(self, start: Point, inner: int, outer: int) -> Window:
         """The window of a block of inner x outer words with its first word at `start`."""
@@ -176,33 +158,39 @@ def paired_parts(
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
     inner, outer = order.entry(window, start)
-    begin = order.stepped(corner, inner, outer)
     first_window = order.block_window(corner, along + (along - inner) % 2, runs)
     next_window = order.block_window(corner, along + along % 2, runs)
     first = count if first_window == next_window else min(count, along - inner + (along - inner) % 2)
-    yield first_window, begin, first
+    yield first_window, order.stepped(corner, inner, outer), first
     if first < count:
-        yield next_window, order.after(first_window, begin, first), count - first
+        yield next_window, order.stepped(corner, 0, outer + 1), count - first
 
 
 def blocks(
     window: Window, order: ScanOrder, start: Point, count: int
-) -> Iterator[tuple[Point, tuple[int, int], slice]]:
-    """The rectangles that `count` words from `start` on fill, at most three for each time around.
+) -> tuple[list[tuple[Point, tuple[int, int], slice]], Point]:
+    """The rectangles that `count` words from `start` on fill, and the point after the last word.
 
-    Yields the first point of each, its (outer, inner) shape, and the slice of its words.
+    A rectangle is its first point, its (outer, inner) shape, and the slice of its words. There are at most
+    three for each time around the window.
     """
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
     inner, outer = order.entry(window, start)
+    parts = []
     done = 0
     while done < count:
-        left = count - done
         point = order.stepped(corner, inner, outer)
-        is_whole = inner == 0 and left >= along
-        shape = (min(left // along, runs - outer), along) if is_whole else (1, min(along - inner, left))
-        yield point, shape, slice(done, done + shape[0] * shape[1])
-        done += shape[0] * shape[1]
-        inner, outer = 0, outer + shape[0]
-        if outer == runs:
-            outer = 0
+        left = count - done
+        if inner == 0 and left >= along:
+            shape = min(left // along, runs - outer), along
+        else:
+            shape = 1, min(left, along - inner)
+        size = shape[0] * shape[1]
+        parts.append((point, shape, slice(done, done + size)))
+        done += size
+        inner += shape[1]
+        if inner == along:
+            inner, outer = 0, outer + shape[0]
+            outer = 0 if outer == runs else outer
+    return parts, order.stepped(corner, inner, outer) if count else start

@@ -82,7 +82,7 @@ def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Poin
     return iter([(parameters.window, parameters.start, count)])
 
 
-def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
+def write_raster(processor: Processor, instruction: Instruction) -> None:
     """Write one bit a pixel: foreground for 1, background for 0.
 
     Hardware: PRG rast.c, LIN wr.c (one bit a pixel into the window in scan order, bytes as in text, highest
@@ -94,18 +94,14 @@ def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     parameters = processor.parameters
     data = np.frombuffer(instruction.data_bytes(), np.uint8)
     foreground, background = processor.colors(instruction)
-    words = np.array((background, foreground), np.uint16)
-    # Bits that go around the window take many times as long.
-    goes_around = 8 * len(data) > parameters.window.width * parameters.window.height
-    at_once = max(1, areas.MOST_AT_ONCE // (32 if goes_around else 2))
-    for first in range(0, len(data), at_once):
-        if first:
-            yield
-        bits = np.unpackbits(data[first : first + at_once])
-        dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
-        parameters.start = processor.frame_buffer.write_scan(
-            parameters.window, parameters.order, parameters.start, words[bits], parameters.enable, dots
+    bits = np.unpackbits(data)
+    dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
+    words = np.array((background, foreground), np.uint16)[bits]
+    parameters.start = register(
+        processor.frame_buffer.write_scan(
+            parameters.window, parameters.order, parameters.start, words, parameters.enable, dots
         )
+    )
 
 
 def write_random_pixels(processor: Processor, instruction: Instruction) -> None:

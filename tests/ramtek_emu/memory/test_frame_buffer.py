@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from random import Random
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -23,18 +25,31 @@ def test_written_counts_the_words_that_reached_the_memory() -> None:
 
 
 @given(
-    windows(), scan_codes, st.integers(0, 99), windows(), st.tuples(st.integers(-3, 9), st.integers(-3, 9))
+    windows(),
+    scan_codes,
+    st.integers(0, 99),
+    windows(),
+    st.tuples(st.integers(-3, 9), st.integers(-3, 9)),
+    st.none() | st.randoms(use_true_random=False),
 )
 def test_words_around_a_window_are_written_and_read_as_single_words_are(
-    window: Window, code: int, count: int, write_window: Window, start: tuple[int, int]
+    window: Window,
+    code: int,
+    count: int,
+    write_window: Window,
+    start: tuple[int, int],
+    random: Random | None,
 ) -> None:
     order, enable = SCAN_ORDERS[code], WriteEnable(0x3F5, write_window)
     whole, single = FrameBuffer(SMALL), FrameBuffer(SMALL)
     words = np.arange(1, count + 1, dtype=np.uint16)
-    whole.write_scan(window, order, Point(*start), words, enable)
+    dots = None if random is None else np.array([random.random() < 0.3 for _ in words], np.bool_)
+    end = whole.write_scan(window, order, Point(*start), words, enable, dots)
     place = Point(*start)
-    for word in words:
-        place = single.write_scan(window, order, place, np.array([word]), enable)
+    for number, word in enumerate(words):
+        dot = None if dots is None else dots[number : number + 1]
+        place = single.write_scan(window, order, place, np.array([word]), enable, dot)
+    assert end == place
     assert (whole.words == single.words).all()
     assert whole.written == single.written
     read, place = [], Point(*start)
