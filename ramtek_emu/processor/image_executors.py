@@ -136,14 +136,12 @@ def fill(processor: Processor, instruction: Instruction) -> Pauses:
     seed = words[parameters.start.line, parameters.start.element]
     word = (seed if by_seed else np.uint16(foreground & parameters.whole_word)) & mask
     compare = np.equal if by_seed else np.not_equal
-    open_pixels = np.empty((inside.height, inside.width), np.bool_)
+    fenced = np.zeros((inside.height, inside.width + 2), np.bool_)
     for band in areas.bands(inside):
         part = words[band.top : band.bottom + 1, inside.left : inside.right + 1] & mask
-        compare(part, word, out=open_pixels[band.top - inside.top : band.bottom + 1 - inside.top])
+        compare(part, word, out=fenced[band.top - inside.top : band.bottom + 1 - inside.top, 1:-1])
         yield
-    yield from areas.fill_area(
-        frame_buffer, inside, open_pixels, parameters.start, foreground, parameters.enable
-    )
+    yield from areas.fill_area(frame_buffer, inside, fenced, parameters.start, foreground, parameters.enable)
 
 
 def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
