@@ -68,22 +68,23 @@ class FrameBuffer:
         words: Words,
         enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
+        pairs: bool = False,
     ) -> Point:
         """Write words along the scan of a window from `start` on; returns the point after the last word.
 
-        With `dots`, only words whose dot is true are written.
+        With `dots`, only words whose dot is true are written. With `pairs`, the words are pixels in pairs.
         """
         if window.is_empty:
             return start
         if len(words) > 2 * window.width * window.height:
-            words, dots = self._without_overwritten_turns(window, order, start, words, enable, dots)
-        parts, end = blocks(window, order, start, len(words))
+            words, dots = self._last_turn(window, order, start, words, enable, dots, pairs)
+        parts, after = blocks(window, order, start, len(words), pairs)
         for point, shape, part in parts:
-            chosen = None if dots is None else dots[part].reshape(shape)
-            self.write_block(point, order, words[part].reshape(shape), enable, chosen)
-        return end
+            block_dots = None if dots is None else dots[part].reshape(shape)
+            self.write_block(point, order, words[part].reshape(shape), enable, block_dots)
+        return after
 
-    def _without_overwritten_turns(
+    def _last_turn(
         self,
         window: Window,
         order: ScanOrder,
@@ -91,35 +92,43 @@ class FrameBuffer:
         words: Words,
         enable: WriteEnable,
         dots: Dots | None,
+        pairs: bool,
     ) -> tuple[Words, Dots | None]:
         """Words and dots with a single turn around the window for all whole turns; counts the others."""
-        size, first = window.width * window.height, order.words_to_corner(window, start)
-        count = max(0, len(words) - first) // size
-        if not count:
+        first, size = order.words_around(window, start, pairs)
+        count = (len(words) - first) // size
+        if count < 1:
             return words, dots
-        dots = np.ones(len(words), np.bool_) if dots is None else dots
         end = first + count * size
+        dots = np.ones(len(words), np.bool_) if dots is None else dots
         turns = dots[first:end].reshape(count, size)
         is_written = turns.any(axis=0)
         if enable.mask & self._every_plane:
-            seen = window.intersection(self.window).intersection(enable.window)
-            overwritten = (turns.sum(axis=0) - is_written).reshape(order.inner_and_outer(window)[::-1])
-            self.written += int(overwritten[part_of(window, seen, order)].sum())
+            runs = order.inner_and_outer(window)[1]
+            place = order.block_window(order.corner(window), size // runs, runs)
+            seen = place.intersection(self.window).intersection(enable.window)
+            overwritten = (turns.sum(axis=0) - is_written).reshape(runs, -1)
+            self.written += int(overwritten[part_of(place, seen, order)].sum())
         last = words[first:end].reshape(count, size)[count - 1 - turns[::-1].argmax(axis=0), np.arange(size)]
         return (
             np.concatenate((words[:first], last, words[end:])),
             np.concatenate((dots[:first], is_written, dots[end:])),
         )
 
-    def read_scan(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
-        """`count` words along the scan of a window from `start` on, and the point after the last word."""
+    def read_scan(
+        self, window: Window, order: ScanOrder, start: Point, count: int, pairs: bool = False
+    ) -> tuple[Words, Point]:
+        """`count` words along the scan of a window from `start` on, and the point after the last word.
+
+        With `pairs`, the words are pixels in pairs.
+        """
         if window.is_empty:
             return np.zeros(count, np.uint16), start
         # From the corner on, the words repeat with every turn around the window: read the first turn alone.
-        size, first = window.width * window.height, order.words_to_corner(window, start)
+        first, size = order.words_around(window, start, pairs)
         repeated = max(0, count - first - size) // size * size
         words = np.zeros(count - repeated, np.uint16)
-        parts, end = blocks(window, order, start, len(words))
+        parts, after = blocks(window, order, start, len(words), pairs)
         for point, shape, part in parts:
             place = order.block_window(point, shape[1], shape[0])
             seen = place.intersection(self.window)
@@ -128,7 +137,7 @@ class FrameBuffer:
                 words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
         if repeated:
             words = np.concatenate((words[:first], np.resize(words[first : first + size], count - first)))
-        return words, end
+        return words, after
 
     def write_block(
         self,

@@ -23,7 +23,6 @@ point is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
 from ramtek_emu.arrays import Raster, Scalar
@@ -122,11 +121,12 @@ class ScanOrder(NamedTuple):
             inner, outer = 0, outer + 1
         return inner, 0 if outer >= runs else outer
 
-    def words_to_corner(self, window: Window, start: Point) -> int:
-        """The number of words from `start` on until the scan comes to the corner."""
+    def words_around(self, window: Window, start: Point, pairs: bool) -> tuple[int, int]:
+        """How many words the scan takes from `start` to the corner, and around the window from there."""
         inner, outer = self.entry(window, start)
         along, runs = self.inner_and_outer(window)
-        return (runs - outer) * along - inner
+        run = whole(along, pairs)
+        return whole(along - inner, pairs) + (runs - outer - 1) * run, run * runs
 
     def block_window(self, start: Point, inner: int, outer: int) -> Window:
         """The window of a block of inner x outer words with its first word at `start`."""
@@ -148,31 +148,18 @@ SCAN_ORDERS: Final = (
 )
 
 
-def paired_parts(
-    window: Window, order: ScanOrder, start: Point, count: int
-) -> Iterator[tuple[Window, Point, int]]:
-    """Yields the parts, at most two, of a scan of `count` pixels in pairs: window, first point, pixels.
-
-    The window of a part is one step wider than `window` if its runs would hold an odd number of pixels.
-    """
-    along, runs = order.inner_and_outer(window)
-    corner = order.corner(window)
-    inner, outer = order.entry(window, start)
-    first_window = order.block_window(corner, along + (along - inner) % 2, runs)
-    next_window = order.block_window(corner, along + along % 2, runs)
-    first = count if first_window == next_window else min(count, along - inner + (along - inner) % 2)
-    yield first_window, order.stepped(corner, inner, outer), first
-    if first < count:
-        yield next_window, order.stepped(corner, 0, outer + 1), count - first
+def whole(words: int, pairs: bool) -> int:
+    """The number of words, or of pixels in whole pairs, that a run takes from here to its edge."""
+    return words + words % 2 if pairs else words
 
 
 def blocks(
-    window: Window, order: ScanOrder, start: Point, count: int
+    window: Window, order: ScanOrder, start: Point, count: int, pairs: bool = False
 ) -> tuple[list[tuple[Point, tuple[int, int], slice]], Point]:
     """The rectangles that `count` words from `start` on fill, and the point after the last word.
 
     A rectangle is its first point, its (outer, inner) shape, and the slice of its words. There are at most
-    three for each time around the window.
+    three for each time around the window. With `pairs`, the words are pixels in pairs.
     """
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
@@ -181,16 +168,15 @@ def blocks(
     done = 0
     while done < count:
         point = order.stepped(corner, inner, outer)
-        left = count - done
-        if inner == 0 and left >= along:
-            shape = min(left // along, runs - outer), along
-        else:
-            shape = 1, min(left, along - inner)
+        left, room = count - done, whole(along - inner, pairs)
+        shape = (
+            (min(left // room, runs - outer), room) if inner == 0 and left >= room else (1, min(left, room))
+        )
         size = shape[0] * shape[1]
         parts.append((point, shape, slice(done, done + size)))
         done += size
         inner += shape[1]
-        if inner == along:
+        if shape[1] == room:
             inner, outer = 0, outer + shape[0]
             outer = 0 if outer == runs else outer
     return parts, order.stepped(corner, inner, outer) if count else start

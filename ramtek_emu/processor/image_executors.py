@@ -6,7 +6,6 @@ table is loaded and read.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -15,7 +14,7 @@ from ramtek_emu.drawing import areas
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import register
-from ramtek_emu.memory.scan_orders import Point, Window, paired_parts
+from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
@@ -40,17 +39,15 @@ def write_image(processor: Processor, instruction: Instruction) -> None:
     mode 1 the upper planes become 0. For pairs of pixels at the edge of the window see scan_orders.
     """
     parameters = processor.parameters
-    if parameters.image_mode & 1:
+    pairs = bool(parameters.image_mode & 1)
+    if pairs:
         words = np.frombuffer(instruction.data_bytes(), np.uint8).astype(np.uint16)
     else:
         words = instruction.data[: (instruction.length or 0) // 2]
-    done = 0
-    for window, start, count in image_parts(processor, len(words)):
-        end = processor.frame_buffer.write_scan(
-            window, parameters.order, start, words[done : done + count], parameters.enable
-        )
-        parameters.start = register(end)
-        done += count
+    end = processor.frame_buffer.write_scan(
+        parameters.window, parameters.order, parameters.start, words, parameters.enable, pairs=pairs
+    )
+    parameters.start = register(end)
 
 
 def read_image(processor: Processor, instruction: Instruction) -> None:
@@ -60,26 +57,18 @@ def read_image(processor: Processor, instruction: Instruction) -> None:
     that pads the last word is 0.
     """
     parameters = processor.parameters
-    length = instruction.length or 0
-    parts = []
-    for window, start, count in image_parts(processor, length if parameters.image_mode & 1 else length // 2):
-        part, end = processor.frame_buffer.read_scan(window, parameters.order, start, count)
-        parameters.start = register(end)
-        parts.append(part)
-    words = np.concatenate(parts) & np.uint16(parameters.read_mask)
-    if parameters.image_mode & 1:
+    length, pairs = instruction.length or 0, bool(parameters.image_mode & 1)
+    count = length if pairs else length // 2
+    words, end = processor.frame_buffer.read_scan(
+        parameters.window, parameters.order, parameters.start, count, pairs
+    )
+    parameters.start = register(end)
+    words &= np.uint16(parameters.read_mask)
+    if pairs:
         data = words.astype(np.uint8).tobytes() + bytes(length % 2)
         reverse = instruction.low_byte & Flags.REVERSE_PACKING
         words = np.frombuffer(data, "<u2" if reverse else ">u2").astype(np.uint16)
     processor.reply(words)
-
-
-def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Point, int]]:
-    """The parts of an image, by the image mode: window, first point, number of pixels."""
-    parameters = processor.parameters
-    if parameters.image_mode & 1 and count and not parameters.window.is_empty:
-        return paired_parts(parameters.window, parameters.order, parameters.start, count)
-    return iter([(parameters.window, parameters.start, count)])
 
 
 def write_raster(processor: Processor, instruction: Instruction) -> None:
