@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ramtek_emu.arrays import Booleans, Dots, Numbers, Words
+from ramtek_emu.arrays import Dots, Numbers, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window, blocks
 
@@ -58,7 +58,7 @@ class FrameBuffer:
         self, window: Window, word: int, enable: WriteEnable = EVERYTHING, dots: Dots | None = None
     ) -> None:
         """Fill a window with a word; with [line, element] `dots`, only pixels whose dot is true."""
-        self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable, dots)
+        self.write_block(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable, dots)
 
     def write_scan(
         self,
@@ -105,7 +105,7 @@ class FrameBuffer:
         is_written = turns.any(axis=0)
         if enable.mask & self._every_plane:
             runs = order.inner_and_outer(window)[1]
-            place = order.block_window(order.corner(window), size // runs, runs)
+            place = order.block_window(order.corner(window), runs, size // runs)
             seen = place.intersection(self.window).intersection(enable.window)
             overwritten = (turns.sum(axis=0) - is_written).reshape(runs, -1)
             self.written += int(overwritten[part_of(place, seen, order)].sum())
@@ -129,8 +129,7 @@ class FrameBuffer:
         repeated = max(0, count - first - size) // size * size
         words = np.zeros(count - repeated, np.uint16)
         parts, after = blocks(window, order, start, len(words), pairs)
-        for point, shape, part in parts:
-            place = order.block_window(point, shape[1], shape[0])
+        for place, shape, part in parts:
             seen = place.intersection(self.window)
             if not seen.is_empty:
                 memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
@@ -138,18 +137,6 @@ class FrameBuffer:
         if repeated:
             words = np.concatenate((words[:first], np.resize(words[first : first + size], count - first)))
         return words, after
-
-    def write_block(
-        self,
-        start: Point,
-        order: ScanOrder,
-        block: Words,
-        enable: WriteEnable = EVERYTHING,
-        dots: Dots | None = None,
-    ) -> None:
-        """Write an [outer, inner] block from `start` on; with `dots`, only words whose dot is true."""
-        place = order.block_window(start, block.shape[1], block.shape[0])
-        self._store(place, order, block, enable, dots)
 
     def write_points(
         self,
@@ -163,7 +150,8 @@ class FrameBuffer:
         mask = enable.mask & self._every_plane
         if inside.is_empty or not mask or not len(elements):
             return
-        seen = inside_of(inside, elements, lines)
+        seen = (elements >= inside.left) & (elements <= inside.right)
+        seen &= (lines >= inside.top) & (lines <= inside.bottom)
         places = lines * self._words.shape[1] + elements
         if not seen.all():
             places = places[seen]
@@ -177,14 +165,18 @@ class FrameBuffer:
         memory[places] = masked
         self.written += len(places)
 
-    def _store(
+    def write_block(
         self,
         place: Window,
         order: ScanOrder,
         block: Words | np.uint16,
-        enable: WriteEnable,
+        enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
     ) -> None:
+        """Write an [outer, inner] block, or a single word everywhere, to a window of its size.
+
+        With [outer, inner] `dots`, only words whose dot is true are written.
+        """
         clipped = place.intersection(self.window).intersection(enable.window)
         mask = enable.mask & self._every_plane
         if clipped.is_empty or not mask:
@@ -212,13 +204,6 @@ class FrameBuffer:
             mixed = (memory & np.uint16(~mask & 0xFFFF)) | mixed
         np.copyto(memory, mixed, where=True if dots is None else dots)
         self.written += memory.size if dots is None else int(np.count_nonzero(dots))
-
-
-def inside_of(window: Window, elements: Numbers, lines: Numbers) -> Booleans:
-    """Whether each point lies inside a window."""
-    inside = (elements >= window.left) & (elements <= window.right)
-    inside &= (lines >= window.top) & (lines <= window.bottom)
-    return inside
 
 
 def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, slice]:

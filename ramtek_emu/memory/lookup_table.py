@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ramtek_emu.arrays import Booleans, Bytes, Colors, PackedColors, Words
+from ramtek_emu.arrays import Bytes, Colors, Dots, PackedColors, Words
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 
@@ -33,7 +33,7 @@ class LookupTable:
         """The number of words of entries written since power-on; it never decreases."""
         self._last_range = 0, 0, 0
         """The last range written: the count `written` before it, its first entry, and the entry after it."""
-        self.touched: Booleans | None = None
+        self.touched: Dots | None = None
         """(entries,) dots that writes make true, also where colors stay the same; None for no dots."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
         # In this byte order, the two halves of a packed entry are the two words of the 24-bit format.

@@ -128,8 +128,8 @@ class ScanOrder(NamedTuple):
         run = whole(along, pairs)
         return whole(along - inner, pairs) + (runs - outer - 1) * run, run * runs
 
-    def block_window(self, start: Point, inner: int, outer: int) -> Window:
-        """The window of a block of inner x outer words with its first word at `start`."""
+    def block_window(self, start: Point, outer: int, inner: int) -> Window:
+        """The window of an [outer, inner] block with its first word at `start`."""
         width, height = (outer, inner) if self.vertical else (inner, outer)
         left = start.element - width + 1 if self.leftward else start.element
         top = start.line - height + 1 if self.upward else start.line
@@ -155,10 +155,10 @@ def whole(words: int, pairs: bool) -> int:
 
 def blocks(
     window: Window, order: ScanOrder, start: Point, count: int, pairs: bool = False
-) -> tuple[list[tuple[Point, tuple[int, int], slice]], Point]:
+) -> tuple[list[tuple[Window, tuple[int, int], slice]], Point]:
     """The rectangles that `count` words from `start` on fill, and the point after the last word.
 
-    A rectangle is its first point, its (outer, inner) shape, and the slice of its words. There are at most
+    A rectangle is its window, its (outer, inner) shape, and the slice of its words. There are at most
     three for each time around the window. With `pairs`, the words are pixels in pairs.
     """
     along, runs = order.inner_and_outer(window)
@@ -173,7 +173,7 @@ def blocks(
             (min(left // room, runs - outer), room) if inner == 0 and left >= room else (1, min(left, room))
         )
         size = shape[0] * shape[1]
-        parts.append((point, shape, slice(done, done + size)))
+        parts.append((order.block_window(point, *shape), shape, slice(done, done + size)))
         done += size
         inner += shape[1]
         if shape[1] == room:

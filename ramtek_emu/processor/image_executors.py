@@ -160,7 +160,8 @@ def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
         blocks.append(words.reshape(-1, along))
         yield
     for run, block in zip(range(0, runs, at_once), blocks, strict=True):
-        processor.frame_buffer.write_block(order.stepped(place, 0, run), order, block, parameters.enable)
+        part = order.block_window(order.stepped(place, 0, run), *block.shape)
+        processor.frame_buffer.write_block(part, order, block, parameters.enable)
         yield
 
 

@@ -20,7 +20,7 @@ def test_written_counts_the_words_that_reached_the_memory() -> None:
     buffer.write_points(np.array([0, 50]), np.array([0, 0]), 9)
     counts.append(buffer.written)
     dots = np.array([[True, False, True]])
-    buffer.write_block(Point(0, 0), SCAN_ORDERS[0], np.ones((1, 3), np.uint16), WriteEnable(1), dots)
+    buffer.write_block(Window(0, 0, 2, 0), SCAN_ORDERS[0], np.ones((1, 3), np.uint16), WriteEnable(1), dots)
     assert [*counts, buffer.written] == [2, 2, 4, 5, 7]
 
 
