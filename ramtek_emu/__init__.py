@@ -82,9 +82,6 @@ _NAMES: Final = {
 """The public names of each module."""
 _HOME: Final = {name: module for module, names in _NAMES.items() for name in names.split()}
 
-_MODULES: Final = ("instructions",)
-"""Modules that are used whole: `ramtek_emu.instructions.write_text(...)`."""
-
 __all__ = list(_HOME)
 
 
@@ -102,7 +99,8 @@ def __getattr__(name: str) -> object:
             return "0+unknown"
     from importlib import import_module
 
-    if name in _MODULES:
+    if name == "instructions":
+        # A module that is used whole: `ramtek_emu.instructions.write_text(...)`.
         return import_module(f"{__name__}.{name}")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -109,10 +109,8 @@ def connected(pairs: list[tuple[Indices, Indices]], count: int) -> Generator[Non
 
     The generator yields None at each pause, and returns the labels.
     """
-    labels = np.empty(count, np.intp)
-    for first in range(0, count, MOST_AT_ONCE):
-        labels[first : first + MOST_AT_ONCE] = np.arange(first, min(first + MOST_AT_ONCE, count))
-        yield
+    labels = np.arange(count)
+    yield
     while pairs:
         # Link the larger label to the smaller one, then shorten every path to its root.
         for upper, lower in pairs:

@@ -13,8 +13,9 @@ import numpy as np
 from ramtek_emu.drawing import areas
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.frame_buffer import NORMAL_ORDER
 from ramtek_emu.memory.parameters import register
-from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
@@ -143,25 +144,21 @@ def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
     corner = Point(*points[0].tolist()) if len(points) else parameters.start
-    order = parameters.order
+    origin = parameters.order.corner(parameters.window)
+    across, down = corner.element - origin.element, corner.line - origin.line
     inside = parameters.window.intersection(processor.frame_buffer.window)
     parameters.start = corner
     if inside.is_empty:
         return
-    first, origin = order.corner(inside), order.corner(parameters.window)
-    place = Point(corner.element + first.element - origin.element, corner.line + first.line - origin.line)
-    along, runs = order.inner_and_outer(inside)
-    at_once = max(1, areas.MOST_AT_ONCE // along)
+    bands = list(areas.bands(inside))
     blocks = []
-    for run in range(0, runs, at_once):
-        count = along * min(at_once, runs - run)
-        words, _ = processor.frame_buffer.read_scan(inside, order, order.stepped(first, 0, run), count)
-        words &= np.uint16(parameters.read_mask)
-        blocks.append(words.reshape(-1, along))
+    for band in bands:
+        words = processor.frame_buffer.words[band.top : band.bottom + 1, band.left : band.right + 1]
+        blocks.append(words & np.uint16(parameters.read_mask))
         yield
-    for run, block in zip(range(0, runs, at_once), blocks, strict=True):
-        part = order.block_window(order.stepped(place, 0, run), *block.shape)
-        processor.frame_buffer.write_block(part, order, block, parameters.enable)
+    for band, block in zip(bands, blocks, strict=True):
+        place = Window(band.left + across, band.top + down, band.right + across, band.bottom + down)
+        processor.frame_buffer.write_block(place, NORMAL_ORDER, block, parameters.enable)
         yield
 
 
