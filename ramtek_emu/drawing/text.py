@@ -88,10 +88,8 @@ def write_text(
     while True:
         cells = numbers[: cells_within(inner, width, along, step)]
         seen = reaching(inner, along, step, low, room)
-        shown = (
-            cells[seen.start : seen.stop] if low_line - across < outer < low_line + room_across else cells[:0]
-        )
-        if len(shown):
+        shown = cells[seen.start : seen.stop]
+        if len(shown) and low_line - across < outer < low_line + room_across:
             dots = beside(scaled(shapes[shown], dots_along, dots_across, size), step)
             whole = beside(np.ones((len(shown), across, along), np.bool_), step) if step != along else None
             place = order.stepped(corner, inner + seen.start * step, outer)

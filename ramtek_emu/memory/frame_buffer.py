@@ -79,9 +79,9 @@ class FrameBuffer:
         if len(words) > 2 * window.width * window.height:
             words, dots = self._last_turn(window, order, start, words, enable, dots, pairs)
         parts, after = blocks(window, order, start, len(words), pairs)
-        for point, shape, part in parts:
+        for place, shape, part in parts:
             block_dots = None if dots is None else dots[part].reshape(shape)
-            self.write_block(point, order, words[part].reshape(shape), enable, block_dots)
+            self.write_block(place, order, words[part].reshape(shape), enable, block_dots)
         return after
 
     def _last_turn(

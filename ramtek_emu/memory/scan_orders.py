@@ -23,7 +23,7 @@ point is.
 
 from __future__ import annotations
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from ramtek_emu.arrays import Raster, Scalar
 
@@ -105,8 +105,8 @@ class ScanOrder(NamedTuple):
         down = window.bottom - point.line if self.upward else point.line - window.top
         return (down, across) if self.vertical else (across, down)
 
-    def stepped(self, corner: Point, inner: Any, outer: Any) -> Point:
-        """The point at these steps from the corner, or the places: the inverse of `steps`."""
+    def stepped(self, corner: Point, inner: int, outer: int) -> Point:
+        """The point at these steps from the corner: the inverse of `steps`."""
         across, down = (outer, inner) if self.vertical else (inner, outer)
         return Point(
             corner.element + (-across if self.leftward else across),
@@ -149,7 +149,7 @@ SCAN_ORDERS: Final = (
 
 
 def whole(words: int, pairs: bool) -> int:
-    """The number of words, or of pixels in whole pairs, that a run takes from here to its edge."""
+    """The number of words, or with `pairs` of pixels in whole pairs, that so many words of a run take."""
     return words + words % 2 if pairs else words
 
 
@@ -169,9 +169,8 @@ def blocks(
     while done < count:
         point = order.stepped(corner, inner, outer)
         left, room = count - done, whole(along - inner, pairs)
-        shape = (
-            (min(left // room, runs - outer), room) if inner == 0 and left >= room else (1, min(left, room))
-        )
+        whole_runs = left // room if inner == 0 else 0
+        shape = (min(whole_runs, runs - outer), room) if whole_runs else (1, min(left, room))
         size = shape[0] * shape[1]
         parts.append((order.block_window(point, *shape), shape, slice(done, done + size)))
         done += size
