@@ -9,6 +9,7 @@ The work is cut into bands of lines and parts of the runs, with a pause after ea
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -39,74 +40,62 @@ def fill_window(
     if window.width * window.height <= 4 * MOST_AT_ONCE:
         frame_buffer.fill(window, word, enable)
         return None
-    return _fill_in_bands(frame_buffer, window.intersection(frame_buffer.window), word, enable)
-
-
-def _fill_in_bands(
-    frame_buffer: FrameBuffer, window: Window, word: int, enable: WriteEnable
-) -> Iterator[None]:
-    for band in bands(window):
-        frame_buffer.fill(band, word, enable)
-        yield
+    fill_band = partial(frame_buffer.fill, word=word, enable=enable)
+    return map(fill_band, bands(window.intersection(frame_buffer.window)))
 
 
 def fill_area(
     frame_buffer: FrameBuffer,
     window: Window,
-    open_pixels: Dots,
+    fenced: Dots,
     start: Point,
     word: int,
     enable: WriteEnable,
 ) -> Iterator[None]:
     """Fill the open pixels that are connected, up, down, left and right, to `start`, and pause at times.
 
-    The window is within the memory and holds `start`; `open_pixels` are its (lines, elements).
+    The window is within the memory and holds `start`; `fenced` are its open pixels, with a closed column on
+    either side, so that every run begins and ends within its line.
     """
-    line, element = start.line - window.top, start.element - window.left
-    if not open_pixels[line, element]:
+    line, element = start.line - window.top, start.element - window.left + 1
+    if not fenced[line, element]:
         return
-    width = window.width + 2
+    width = fenced.shape[1]
     cut = [slice(band.top - window.top, band.bottom + 1 - window.top) for band in bands(window)]
-    found: list[tuple[Indices, Indices]] = []
+    found: list[Indices] = []
     pairs: list[tuple[Indices, Indices]] = []
     count = seed = 0
-    above = np.zeros(0, np.intp), np.zeros(0, np.intp)
+    above = np.zeros(0, np.intp)
     for band in cut:
-        # Add a closed column on either side, so that every run begins and ends within its line.
-        fenced = np.zeros((band.stop - band.start, width), np.int8)
-        fenced[:, 1:-1] = open_pixels[band]
-        edges = np.diff(fenced.reshape(-1))
-        starts, ends = (np.flatnonzero(edges == edge) + 1 + band.start * width for edge in (1, -1))
+        # The edges are the first pixel of each run and the pixel after its last, in turns.
+        pixels = fenced[band].reshape(-1)
+        edges = np.flatnonzero(pixels[1:] != pixels[:-1]) + (1 + band.start * width)
         if band.start <= line < band.stop:
-            seed = count + int(np.searchsorted(starts, line * width + element + 1, side="right")) - 1
+            seed = count + int(np.searchsorted(edges[::2], line * width + element, side="right")) - 1
         # Link the runs, those of the last line above the band too.
-        begin = count - len(above[0])
-        upper, lower = links(np.concatenate((above[0], starts)), np.concatenate((above[1], ends)), width)
+        begin = count - len(above) // 2
+        upper, lower = links(np.concatenate((above, edges)), width)
         pairs.append((upper + begin, lower + begin))
-        found.append((starts, ends))
-        count += len(starts)
-        last = np.searchsorted(starts, (band.stop - 1) * width)
-        above = starts[last:], ends[last:]
+        found.append(edges)
+        count += len(edges) // 2
+        above = edges[np.searchsorted(edges, (band.stop - 1) * width) :]
         yield
     labels = yield from connected(pairs, count)
     count = 0
-    for lines, band, (starts, ends) in zip(bands(window), cut, found, strict=True):
-        chosen = labels[count : count + len(starts)] == labels[seed]
-        count += len(starts)
+    for lines, band, edges in zip(bands(window), cut, found, strict=True):
+        runs = edges.reshape(-1, 2)
+        chosen = labels[count : count + len(runs)] == labels[seed]
+        count += len(runs)
         # Measured: for large areas of few runs, repeating takes a twentieth of the time of a sum along lines.
-        runs = np.count_nonzero(chosen)
-        cuts = np.zeros(2 * runs + 2, np.intp)
-        cuts[1:-1:2], cuts[2::2] = starts[chosen] - band.start * width, ends[chosen] - band.start * width
-        cuts[-1] = (band.stop - band.start) * width
-        is_filled = np.zeros(2 * runs + 1, np.bool_)
-        is_filled[1::2] = True
-        filled = np.repeat(is_filled, np.diff(cuts)).reshape(-1, width)[:, 1:-1]
+        sizes = np.diff(runs[chosen].reshape(-1), prepend=band.start * width, append=band.stop * width)
+        filled = np.repeat(np.arange(len(sizes)) % 2 == 1, sizes).reshape(-1, width)[:, 1:-1]
         frame_buffer.fill(lines, word, enable, filled)
         yield
 
 
-def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]:
-    """The pairs of runs that touch: the indices of the upper runs and of the lower runs."""
+def links(edges: Indices, width: int) -> tuple[Indices, Indices]:
+    """The pairs of runs that touch, by the edges of all runs: the indices of the upper and the lower runs."""
+    starts, ends = edges.reshape(-1, 2).T.copy()
     first = np.searchsorted(ends, starts + width, side="right")
     last = np.searchsorted(starts, ends + width, side="left")
     counts = np.maximum(last - first, 0)
@@ -120,10 +109,8 @@ def connected(pairs: list[tuple[Indices, Indices]], count: int) -> Generator[Non
 
     The generator yields None at each pause, and returns the labels.
     """
-    labels = np.empty(count, np.intp)
-    for first in range(0, count, MOST_AT_ONCE):
-        labels[first : first + MOST_AT_ONCE] = np.arange(first, min(first + MOST_AT_ONCE, count))
-        yield
+    labels = np.arange(count)
+    yield
     while pairs:
         # Link the larger label to the smaller one, then shorten every path to its root.
         for upper, lower in pairs:

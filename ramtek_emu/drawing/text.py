@@ -79,40 +79,35 @@ def write_text(
     corner = order.corner(window)
     width, height = order.inner_and_outer(window)
     inner, outer = order.steps(window, start)
-    # Count the cells of the first line, the cells of the next lines, and the lines.
-    first_cells = cells_from(inner, width, along, step)
-    line_cells = cells_from(0, width, along, step)
-    lines = max(1, cells_from(outer, height, across, line_step))
-    numbers = np.frombuffer(codes, np.uint8)[: first_cells + (lines - 1) * line_cells]
-    more = len(numbers) - first_cells
-    last = -(-more // line_cells) if more > 0 else 0
     # Draw the cells that reach into the memory, line by line.
     memory = frame_buffer.window.intersection(parameters.write_window)
     low, low_line = order.steps(window, order.corner(memory))
     room, room_across = order.inner_and_outer(memory)
     words = np.array((background, foreground), np.uint16)
-    seen_lines = reaching(outer, across, line_step, low_line, room_across)
-    for line in range(seen_lines.start, min(seen_lines.stop, last + 1)):
-        end = first_cells + line * line_cells
-        first, cells = (inner, numbers[:end]) if line == 0 else (0, numbers[end - line_cells : end])
-        seen = reaching(first, along, step, low, room)
-        cells = cells[seen.start : seen.stop]
-        if line > seen_lines.start:
-            yield
-        if len(cells):
-            dots = beside(scaled(shapes[cells], dots_along, dots_across, size), step)
-            whole = beside(np.ones((len(cells), across, along), np.bool_), step) if step != along else None
-            written = dots if transparent else whole
-            place = order.stepped(corner, first + seen.start * step, outer + line * line_step)
+    numbers = np.frombuffer(codes, np.uint8)
+    while True:
+        cells = numbers[: cells_within(inner, width, along, step)]
+        seen = reaching(inner, along, step, low, room)
+        shown = cells[seen.start : seen.stop]
+        if len(shown) and low_line - across < outer < low_line + room_across:
+            dots = beside(scaled(shapes[shown], dots_along, dots_across, size), step)
+            whole = beside(np.ones((len(shown), across, along), np.bool_), step) if step != along else None
+            place = order.stepped(corner, inner + seen.start * step, outer)
             frame_buffer.write_block(
-                place, order, words.take(dots.view(np.uint8)), parameters.enable, written
+                order.block_window(place, *dots.shape),
+                order,
+                words.take(dots.view(np.uint8)),
+                parameters.enable,
+                dots if transparent else whole,
             )
-    if not last:
-        return order.stepped(corner, inner + len(numbers) * step, outer)
-    return order.stepped(corner, (more - (last - 1) * line_cells) * step, outer + last * line_step)
+        numbers = numbers[len(cells) :]
+        if not len(numbers) or not cells_within(outer + line_step, height, across, line_step):
+            return order.stepped(corner, inner + len(cells) * step, outer)
+        inner, outer = 0, outer + line_step
+        yield
 
 
-def cells_from(first: int, extent: int, size: int, step: int) -> int:
+def cells_within(first: int, extent: int, size: int, step: int) -> int:
     """The number of cells, from `first` on at a distance of `step`, that end within an extent.
 
     A cell that begins at the near edge, or before it, counts even if it is larger than the extent.

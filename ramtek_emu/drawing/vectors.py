@@ -9,7 +9,7 @@ line, is drawn. Bresenham's algorithm leaves the choice open, and no source says
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -120,15 +120,6 @@ def write_line(
         frame_buffer.write_points(along, aside, word, enable)
 
 
-def _are_inside(ends: Numbers, limits: Sequence[tuple[int, int]]) -> bool:
-    """Whether all (n, 2) ends are within the limits of elements and lines."""
-    least, most = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
-    return all(
-        low <= lowest and highest <= high
-        for (low, high), lowest, highest in zip(limits, least, most, strict=True)
-    )
-
-
 def points(
     starts: Numbers, ends: Numbers, inside: Window
 ) -> Iterator[tuple[Numbers, Numbers, Numbers, Indices]]:
@@ -140,7 +131,8 @@ def points(
     doubled, divisor, direction = 2 * size, 2 * np.maximum(length, 1), np.sign(offset)
     first, last = np.zeros_like(length), length
     limits: tuple[tuple[int, int], ...] = (inside.left, inside.right), (inside.top, inside.bottom)
-    if len(starts) and _are_inside(np.concatenate((starts, ends)), limits):
+    places = np.concatenate((starts, ends))
+    if len(starts) and all(inside.holds(Point(*corner)) for corner in (places.min(0), places.max(0))):
         # Most hosts clip their lines, and this test takes a fifth of the time of clipping.
         limits = ()
     for axis, (low, high) in enumerate(limits):
@@ -162,7 +154,7 @@ def points(
         numbers += first[which]
         over = divisor[which]
         half = over >> 1
-        places = []
+        pair = []
         for axis in (0, 1):
             # Compute in place, because each temporary array costs page faults.
             place = doubled[which, axis]
@@ -171,8 +163,8 @@ def points(
             place //= over
             place *= direction[which, axis]
             place += starts[which, axis]
-            places.append(place)
-        yield places[0], places[1], numbers, which
+            pair.append(place)
+        yield pair[0], pair[1], numbers, which
 
 
 MOST_POINTS: Final = 1 << 15

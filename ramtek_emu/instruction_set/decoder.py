@@ -22,7 +22,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Booleans, Words
+from ramtek_emu.arrays import Dots, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
 from ramtek_emu.instruction_set.table import (
@@ -225,7 +225,7 @@ def formats_of_words(extended: bool) -> tuple[InstructionFormat, ...]:
 
 
 @lru_cache
-def words_that_begin(extended: bool) -> Booleans:
+def words_that_begin(extended: bool) -> Dots:
     """Whether each of the 65,536 words begins an instruction."""
     return np.array([format is not ILLEGAL for format in formats_of_words(extended)])
 

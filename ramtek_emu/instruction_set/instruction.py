@@ -6,7 +6,7 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -56,7 +56,8 @@ def encode(instruction: Instruction) -> Words:
         return instruction.data
     head = [format.opcode << 8 | instruction.low_byte]
     if format.is_normal:
-        first, second = flag_words_of(instruction.operands)
+        bits = sum(OPERAND_BITS[name] for name in instruction.operands)
+        first, second = bits & 0xFFFF, bits >> 16
         for flag, word in ((Flags.OPERANDS_1, first), (Flags.OPERANDS_2, second)):
             if word:
                 head[0] |= flag
@@ -71,14 +72,6 @@ def encode(instruction: Instruction) -> Words:
             head.extend((instruction.length or 0,) if name == "length" else instruction.operands[name])
     words = np.array(head, np.uint16)
     return np.concatenate((words, instruction.data)) if len(instruction.data) else words
-
-
-def flag_words_of(operands: Iterable[str]) -> tuple[int, int]:
-    """The two operand flag words that name these operands."""
-    bits = 0
-    for name in operands:
-        bits |= OPERAND_BITS[name]
-    return bits & 0xFFFF, bits >> 16
 
 
 def normal(

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ramtek_emu.arrays import Booleans, Dots, Numbers, Words
+from ramtek_emu.arrays import Dots, Numbers, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window, blocks
 
@@ -58,7 +58,7 @@ class FrameBuffer:
         self, window: Window, word: int, enable: WriteEnable = EVERYTHING, dots: Dots | None = None
     ) -> None:
         """Fill a window with a word; with [line, element] `dots`, only pixels whose dot is true."""
-        self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable, dots)
+        self.write_block(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable, dots)
 
     def write_scan(
         self,
@@ -68,71 +68,75 @@ class FrameBuffer:
         words: Words,
         enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
+        pairs: bool = False,
     ) -> Point:
         """Write words along the scan of a window from `start` on; returns the point after the last word.
 
-        With `dots`, only words whose dot is true are written.
+        With `dots`, only words whose dot is true are written. With `pairs`, the words are pixels in pairs.
         """
-        along, runs = order.inner_and_outer(window)
-        size = along * runs
-        if not size:
+        if window.is_empty:
             return start
-        inner, outer = order.entry(window, start)
-        turns = len(words) // size - 1
-        if turns > 0 and dots is None and min(inner, outer) >= 0:
-            # Each turn around the window overwrites the turn before: count them all, and write the last.
-            seen = window.intersection(self.window).intersection(enable.window)
-            if enable.mask & self._every_plane:
-                self.written += turns * seen.width * seen.height
-            words = words[turns * size :]
-        count, rest = divmod(len(words), along)
-        if dots is None and inner == rest == 0 and 0 <= outer < outer + count <= runs:
-            # The common case: whole lines of the window, without going around it.
-            corner = order.corner(window)
-            entered = order.stepped(corner, 0, outer)
-            self.write_block(entered, order, words.reshape(count, along), enable)
-            return order.stepped(corner, 0, (outer + count) % runs)
-        if len(words) < 2 * size:
-            for point, shape, part in blocks(window, order, start, len(words)):
-                chosen = None if dots is None else dots[part].reshape(shape)
-                self.write_block(point, order, words[part].reshape(shape), enable, chosen)
-        else:
-            elements, lines = order.places(window, start, len(words))
-            written = slice(None) if dots is None else dots
-            self.write_points(elements[written], lines[written], words[written], enable)
-        return order.after(window, start, len(words))
+        if len(words) > 2 * window.width * window.height:
+            words, dots = self._last_turn(window, order, start, words, enable, dots, pairs)
+        parts, after = blocks(window, order, start, len(words), pairs)
+        for place, shape, part in parts:
+            block_dots = None if dots is None else dots[part].reshape(shape)
+            self.write_block(place, order, words[part].reshape(shape), enable, block_dots)
+        return after
 
-    def read_scan(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
-        """`count` words along the scan of a window from `start` on, and the point after the last word."""
-        size = window.width * window.height
-        around = size > 0 and min(order.entry(window, start)) >= 0
-        words = np.zeros(min(count, size) if around else count, np.uint16)
-        if size and len(words) > size:
-            elements, lines = order.places(window, start, count)
-            inside = inside_of(self.window, elements, lines)
-            words[inside] = self._words[lines[inside], elements[inside]]
-        elif size:
-            for point, shape, part in blocks(window, order, start, len(words)):
-                place = order.block_window(point, shape[1], shape[0])
-                seen = place.intersection(self.window)
-                if not seen.is_empty:
-                    memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
-                    words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
-        # From a start within the window on, the words repeat.
-        words = np.resize(words, count) if around else words
-        return words, order.after(window, start, count) if size else start
-
-    def write_block(
+    def _last_turn(
         self,
-        start: Point,
+        window: Window,
         order: ScanOrder,
-        block: Words,
-        enable: WriteEnable = EVERYTHING,
-        dots: Dots | None = None,
-    ) -> None:
-        """Write an [outer, inner] block from `start` on; with `dots`, only words whose dot is true."""
-        place = order.block_window(start, block.shape[1], block.shape[0])
-        self._store(place, order, block, enable, dots)
+        start: Point,
+        words: Words,
+        enable: WriteEnable,
+        dots: Dots | None,
+        pairs: bool,
+    ) -> tuple[Words, Dots | None]:
+        """Words and dots with a single turn around the window for all whole turns; counts the others."""
+        first, size = order.words_around(window, start, pairs)
+        count = (len(words) - first) // size
+        if count < 1:
+            return words, dots
+        end = first + count * size
+        dots = np.ones(len(words), np.bool_) if dots is None else dots
+        turns = dots[first:end].reshape(count, size)
+        is_written = turns.any(axis=0)
+        if enable.mask & self._every_plane:
+            runs = order.inner_and_outer(window)[1]
+            place = order.block_window(order.corner(window), runs, size // runs)
+            seen = place.intersection(self.window).intersection(enable.window)
+            overwritten = (turns.sum(axis=0) - is_written).reshape(runs, -1)
+            self.written += int(overwritten[part_of(place, seen, order)].sum())
+        last = words[first:end].reshape(count, size)[count - 1 - turns[::-1].argmax(axis=0), np.arange(size)]
+        return (
+            np.concatenate((words[:first], last, words[end:])),
+            np.concatenate((dots[:first], is_written, dots[end:])),
+        )
+
+    def read_scan(
+        self, window: Window, order: ScanOrder, start: Point, count: int, pairs: bool = False
+    ) -> tuple[Words, Point]:
+        """`count` words along the scan of a window from `start` on, and the point after the last word.
+
+        With `pairs`, the words are pixels in pairs.
+        """
+        if window.is_empty:
+            return np.zeros(count, np.uint16), start
+        # From the corner on, the words repeat with every turn around the window: read the first turn alone.
+        first, size = order.words_around(window, start, pairs)
+        repeated = max(0, count - first - size) // size * size
+        words = np.zeros(count - repeated, np.uint16)
+        parts, after = blocks(window, order, start, len(words), pairs)
+        for place, shape, part in parts:
+            seen = place.intersection(self.window)
+            if not seen.is_empty:
+                memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
+                words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
+        if repeated:
+            words = np.concatenate((words[:first], np.resize(words[first : first + size], count - first)))
+        return words, after
 
     def write_points(
         self,
@@ -146,7 +150,8 @@ class FrameBuffer:
         mask = enable.mask & self._every_plane
         if inside.is_empty or not mask or not len(elements):
             return
-        seen = inside_of(inside, elements, lines)
+        seen = (elements >= inside.left) & (elements <= inside.right)
+        seen &= (lines >= inside.top) & (lines <= inside.bottom)
         places = lines * self._words.shape[1] + elements
         if not seen.all():
             places = places[seen]
@@ -160,14 +165,18 @@ class FrameBuffer:
         memory[places] = masked
         self.written += len(places)
 
-    def _store(
+    def write_block(
         self,
         place: Window,
         order: ScanOrder,
         block: Words | np.uint16,
-        enable: WriteEnable,
+        enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
     ) -> None:
+        """Write an [outer, inner] block, or a single word everywhere, to a window of its size.
+
+        With [outer, inner] `dots`, only words whose dot is true are written.
+        """
         clipped = place.intersection(self.window).intersection(enable.window)
         mask = enable.mask & self._every_plane
         if clipped.is_empty or not mask:
@@ -195,13 +204,6 @@ class FrameBuffer:
             mixed = (memory & np.uint16(~mask & 0xFFFF)) | mixed
         np.copyto(memory, mixed, where=True if dots is None else dots)
         self.written += memory.size if dots is None else int(np.count_nonzero(dots))
-
-
-def inside_of(window: Window, elements: Numbers, lines: Numbers) -> Booleans:
-    """Whether each point lies inside a window."""
-    inside = (elements >= window.left) & (elements <= window.right)
-    inside &= (lines >= window.top) & (lines <= window.bottom)
-    return inside
 
 
 def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, slice]:

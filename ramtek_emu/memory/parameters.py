@@ -105,11 +105,6 @@ class Parameters:
         """Set the values of a state."""
         vars(self).update(state)
 
-    def operand(self, name: str) -> tuple[int, ...]:
-        """The words of an operand."""
-        value = getattr(self, name)
-        return tuple(number & 0xFFFF for number in (value if isinstance(value, tuple) else (value,)))
-
     @property
     def order(self) -> ScanOrder:
         """The current scan order.

@@ -15,11 +15,9 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.memory.cursors import LINE_BITS
+from ramtek_emu.memory.cursors import LINE_BITS, SHAPE_SIZE
 from ramtek_emu.processor.processor import Executors, Processor
 from ramtek_emu.video.view import pixel_at, screen_at
-
-SHAPE_BYTES_PER_ROW: Final = 4
 
 
 def has_cursor(processor: Processor, instruction: Instruction) -> bool:
@@ -76,9 +74,9 @@ def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
 def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL (32 rows of two words, low byte first). Assumed: fewer rows replace the topmost ones."""
     if has_cursor(processor, instruction):
-        data = instruction.data.astype("<u2").view(np.uint8)[: instruction.length]
-        rows = data[: len(data) // SHAPE_BYTES_PER_ROW * SHAPE_BYTES_PER_ROW].reshape(-1, SHAPE_BYTES_PER_ROW)
-        processor.cursors.set_shape(instruction.low_byte, rows[:32])
+        words = instruction.data[: (instruction.length or 0) // 4 * 2]
+        rows = words.astype("<u2").view(np.uint8).reshape(-1, 4)
+        processor.cursors.set_shape(instruction.low_byte, rows[:SHAPE_SIZE])
 
 
 def connect_device(processor: Processor, instruction: Instruction) -> None:

@@ -90,8 +90,8 @@ def read_parameters(processor: Processor, instruction: Instruction) -> None:
     of coefficients that WC has sent as pairs.
     """
     names = instruction.operands or OPERANDS
-    words = [word for name in names for word in processor.parameters.operand(name)]
-    processor.reply(np.array(words, np.uint16))
+    numbers = np.concatenate([np.atleast_1d(getattr(processor.parameters, name)) for name in names])
+    processor.reply((numbers & 0xFFFF).astype(np.uint16))
 
 
 def read_error_status(processor: Processor, instruction: Instruction) -> None:
