@@ -122,14 +122,9 @@ class InputQueue:
         elif added.action == "release":
             self._down.discard(added.button)
         last = self._waiting[-1] if self._waiting else None
-        if not isinstance(last, Pointer) or movement(last) != movement(added) or movement(added) is None:
+        if not isinstance(last, Pointer) or added.action not in MOVEMENTS:
+            return added
+        if last._replace(element=added.element, line=added.line, steps=added.steps) != added:
             return added
         self._waiting.pop()
         return added if added.action == "move" else added._replace(steps=last.steps + added.steps)
-
-
-def movement(pointer: Pointer) -> tuple[str, bool, bool] | None:
-    """The action and the modifiers of a movement; None if the action is no movement."""
-    if pointer.action not in MOVEMENTS:
-        return None
-    return pointer.action, pointer.shift, pointer.control
