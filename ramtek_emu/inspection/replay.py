@@ -41,9 +41,7 @@ class Replay:
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
         """Begin with a display as it is at power-on, or like `start` without its pending words."""
-        self._begin(stream, Ramtek9300(stream.configuration) if start is None else start)
-
-    def _begin(self, stream: Stream, start: Ramtek9300) -> None:
+        start = Ramtek9300(stream.configuration) if start is None else start
         self.stream = stream
         self.number = 0
         """How many instructions the display has executed; 0 is power-on."""
@@ -57,7 +55,8 @@ class Replay:
         self._packer = Packer()
         self._seconds = STATE_SECONDS
         self._due = 0.0
-        self._bytes = 0
+        self.state_bytes = 0
+        """The bytes that the states take."""
         self._states: list[State] = []
         self._keep(self._packer.pack(start, 0))
         self.display = self.display_at(0)
@@ -72,11 +71,6 @@ class Replay:
     def prepared(self) -> int:
         """The number of instructions up to which states are kept."""
         return self._states[-1].number
-
-    @property
-    def state_bytes(self) -> int:
-        """The bytes that the states take."""
-        return self._bytes
 
     def prepare_for(self, seconds: float) -> bool:
         """Run on for up to `seconds`, and keep states; returns whether instructions are left."""
@@ -109,17 +103,17 @@ class Replay:
         """Keep a state, in place of an older state with its number; drop states if there are too many."""
         if self._states and self._states[-1].number == state.number:
             self._drop_last()
-        self._bytes += self._bytes_of_next(state)
+        self.state_bytes += self._bytes_of_next(state)
         self._states.append(state)
         most = max(LEAST_STATE_BYTES, STATE_BYTES * len(self.stream.words))
-        if self._bytes > most:
+        if self.state_bytes > most:
             self._seconds *= 2
             self._states = thinned(self._states)
-            self._bytes = size_of(self._states)
+            self.state_bytes = size_of(self._states)
 
     def _drop_last(self) -> None:
         state = self._states.pop()
-        self._bytes -= self._bytes_of_next(state)
+        self.state_bytes -= self._bytes_of_next(state)
 
     def _bytes_of_next(self, state: State) -> int:
         """The bytes of a state that follows the last state and shares blocks with it."""
@@ -146,10 +140,6 @@ class Replay:
         if has_moved or (self.prepared < len(self.stream) and thread_time() >= self._due):
             self._keep(self._packer.pack(display, len(self.stream)))
             self._due = thread_time() + self._seconds
-
-    def forget(self, display: Ramtek9300) -> None:
-        """Begin again with an empty stream and a display as it is now."""
-        self._begin(Stream(self.stream.configuration), display)
 
     def go_to(self, number: int) -> None:
         """Bring the display to an instruction, forward or back."""

@@ -85,10 +85,11 @@ class Inspection:
         return len(self.replay.stream)
 
 
-def inspection_of(replay: Replay, host: RunningHost | None = None) -> Inspection:
-    """The inspection of a replay where it stands; with a host and its replay, of a running display."""
-    number = replay.number if host is None else len(replay.stream)
-    return Inspection(replay=replay, host=host, number=number, target=number, is_following=host is not None)
+def inspection_of(inspected: Replay | RunningHost) -> Inspection:
+    """The inspection of a replay where it stands, or of the running display of a host."""
+    if isinstance(inspected, RunningHost):
+        return go_on(Inspection(replay=inspected.replay, host=inspected))
+    return Inspection(replay=inspected, number=inspected.number, target=inspected.number)
 
 
 # The display and the position.
@@ -104,7 +105,7 @@ def display_of(session: Inspection) -> Ramtek9300:
 
 def is_busy(session: Inspection) -> bool:
     """Whether a tick has work to do, or waits for a host itself."""
-    if session.is_following and session.host is not None and session.host.is_connected:
+    if session.is_following and session.host is not None and session.host.server.busy:
         return True
     return session.work is not None or session.number != session.target or is_preparing(session)
 
@@ -155,11 +156,10 @@ def tick(session: Inspection) -> Inspection:
 
 def _served(session: Inspection, host: RunningHost) -> Inspection:
     """Serve the host, and stand at its last instruction unless it is paused."""
-    stream = session.replay.stream
     host.serve(not session.is_following)
-    if session.replay.stream is not stream:
+    if session.replay is not host.replay:
         message = f"the instructions took {MOST_BYTES >> 20} MB of memory: they are counted from here on"
-        session = tell(select(session, None), message)
+        session = tell(replace(select(session, None), replay=host.replay), message)
     return _followed(session) if session.is_following and session.length != session.number else session
 
 
