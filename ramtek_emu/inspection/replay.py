@@ -58,7 +58,7 @@ class Replay:
         self.state_bytes = 0
         """The bytes that the states take."""
         self._states: list[State] = []
-        self._keep(self._packer.pack(start, 0))
+        self._keep(start, 0, np.ones(start.words.shape, np.bool_))
         self.display = self.display_at(0)
         """The display after `number` instructions."""
         self.display.scan_out.shown_table = start.scan_out.shown_table
@@ -96,11 +96,12 @@ class Replay:
                 if thread_time() >= due:
                     break
                 yield
-            self._keep(self._packer.pack(display, number, np.packbits(touched, axis=1)))
+            self._keep(display, number, touched)
             yield
 
-    def _keep(self, state: State) -> None:
+    def _keep(self, display: Ramtek9300, number: int, touched: Dots) -> None:
         """Keep a state, in place of an older state with its number; drop states if there are too many."""
+        state = self._packer.pack(display, number, touched)
         if self._states and self._states[-1].number == state.number:
             self._drop_last()
         self.state_bytes += self._bytes_of_next(state)
@@ -138,7 +139,7 @@ class Replay:
         and a state is due.
         """
         if has_moved or (self.prepared < len(self.stream) and thread_time() >= self._due):
-            self._keep(self._packer.pack(display, len(self.stream)))
+            self._keep(display, len(self.stream), np.ones(display.words.shape, np.bool_))
             self._due = thread_time() + self._seconds
 
     def go_to(self, number: int) -> None:
@@ -174,18 +175,16 @@ class Replay:
         """The last state that was kept before an instruction, or after it exactly."""
         return self._states[bisect_right(self._states, number, key=attrgetter("number")) - 1]
 
-    def stretches(self, window: Window, after: int, until: int) -> Iterator[tuple[int, int, bool]]:
-        """The parts of the stream between states, from the instruction after `after` up to `until`.
+    def stretches(self, window: Window, after: int, until: int) -> list[tuple[int, int]]:
+        """The parts of the stream between states that may write to a window: (the number before, the last).
 
-        Yields the number before each part, its last number, and whether it may write to a window.
+        Only instructions after `after` and up to `until` are in them.
         """
-        # A running host adds states meanwhile.
-        for state, following in pairwise([*self._states, None]):
-            assert state is not None
-            begin = max(state.number, after)
-            end = until if following is None else min(following.number, until)
-            if end > begin:
-                yield begin, end, following is None or following.may_touch(window)
+        pairs = pairwise(self._states)
+        parts = [(state.number, later.number) for state, later in pairs if later.may_touch(window)]
+        parts.append((self.prepared, until))
+        clipped = ((max(begin, after), min(end, until)) for begin, end in parts)
+        return [(begin, end) for begin, end in clipped if begin < end]
 
     def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
         """Run a display from `number` to `end`; yields the number after each instruction."""
