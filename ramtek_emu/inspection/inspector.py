@@ -22,7 +22,7 @@ from ramtek_emu.inspection.page import InspectorPage, layout_of
 from ramtek_emu.inspection.session import Inspection, display_of
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.overlay import KEYS
-from ramtek_emu.monitor.window import LEFT, RIGHT, TICK_MILLISECONDS, Key, Monitor, Pointer
+from ramtek_emu.monitor.window import LEFT, RIGHT, Key, Monitor, Pointer
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.video.scan_out import turned
 from ramtek_emu.writing import PNG, write_numbered
@@ -52,7 +52,6 @@ class Inspector:
             source=self.page,
             on_key=self.press,
             on_pointer=self.point,
-            on_tick=lambda: self._do(sessions.tick),
             on_message=lambda message: self._do(sessions.tell, message),
         )
 
@@ -67,15 +66,16 @@ class Inspector:
 
     def run(self, hint: Hint = lambda _: "", ends: Callable[[], bool] = lambda: False) -> None:
         """Keep the window open until it is closed, or until `ends()` is true; NoScreenError."""
-        monitor = self.monitor
-        monitor.open()
-        try:
-            while monitor.is_open and not ends():
-                monitor.step(0 if sessions.is_busy(self.session) else TICK_MILLISECONDS)
-                if message := hint(time.monotonic()):
-                    monitor.tell(message)
-        finally:
-            monitor.close()
+
+        def tick() -> None:
+            self._do(sessions.tick)
+            if message := hint(time.monotonic()):
+                self._do(sessions.tell, message)
+            if ends():
+                self.monitor.close()
+
+        self.monitor.on_tick = tick
+        self.monitor.run(lambda: sessions.is_busy(self.session))
 
     def press(self, key: Key) -> bool:
         """Handle a key; returns whether it means something here."""

@@ -78,10 +78,9 @@ class Replay:
         for _ in self._preparing:
             if perf_counter() >= end:
                 break
-        if self.prepared < len(self.stream):
-            return True
-        self._preparing = self._prepare()
-        return False
+        else:
+            self._preparing = self._prepare()
+        return self.prepared < len(self.stream)
 
     def _prepare(self) -> Iterator[None]:
         """Run a display over the stream, and keep states; pauses after each instruction."""

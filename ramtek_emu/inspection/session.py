@@ -206,9 +206,15 @@ def stopped(session: Inspection) -> Inspection:
 # Searches.
 
 
-def find(session: Inspection, back: bool = False) -> Inspection:
-    """Go to the next instruction whose row of the listing has the typed text, or to the last one before."""
-    text = (session.typed or "").strip() or session.text
+def enter(session: Inspection, back: bool = False) -> Inspection:
+    """Go to the instruction whose number was typed; else to the next whose listing has the text, or back.
+
+    A text stays typed, to be found again.
+    """
+    typed = session.typed or ""
+    if typed.isascii() and typed.isdigit():
+        return go(replace(session, typed=None), int(typed))
+    text = typed.strip() or session.text
     session = replace(pause(session), text=text)
     if not text:
         return tell(session, "type a text of the listing first, such as FORE=7 or WI WIN=")
@@ -265,14 +271,6 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
 def ask(session: Inspection, typed: str = "") -> Inspection:
     """Begin, or go on, to type an instruction's number or a text of the listing."""
     return replace(session, typed=typed, message="")
-
-
-def enter(session: Inspection, back: bool = False) -> Inspection:
-    """Go to the instruction whose number was typed; else find the text, and stay at typing."""
-    typed = session.typed or ""
-    if typed.isascii() and typed.isdigit():
-        return go(replace(session, typed=None), int(typed))
-    return find(session, back)
 
 
 def escape(session: Inspection) -> Inspection:
@@ -334,14 +332,13 @@ def memory_window(display: Ramtek9300, first: Point, last: Point) -> Window:
 
     If the view wraps around an edge of the memory between them, the rectangle ends at that edge.
     """
-    elements, lines = shown_pixels(display)
+    sizes, parameters = display.configuration, display.processor.parameters
     left, right = sorted((first.element, last.element))
-    top, bottom = sorted((first.line, last.line))
-    elements, lines = elements[left : right + 1], lines[top : bottom + 1]
-    if display.processor.parameters.origin_at_bottom:
-        lines = lines[::-1]
-    ends = (int(places[places >= places[0]].max()) for places in (elements, lines))
-    return Window(int(elements[0]), int(lines[0]), *ends)
+    top, bottom = sorted((first.line, last.line), reverse=parameters.origin_at_bottom)
+    left, top = pixel_at(parameters, sizes, left, top)
+    right, bottom = pixel_at(parameters, sizes, right, bottom)
+    ends = right if right >= left else sizes.elements - 1, bottom if bottom >= top else sizes.lines - 1
+    return Window(left, top, *ends)
 
 
 def parameter_texts(display: Ramtek9300) -> dict[str, str]:

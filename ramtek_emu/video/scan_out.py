@@ -124,9 +124,6 @@ class ScanOut:
         shown_words = self._frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
 
-    def __repr__(self) -> str:
-        return f"ScanOut({self.elements} x {self.lines})"
-
     @property
     def stamp(self) -> Stamp:
         """A value that changes whenever the field may have changed."""

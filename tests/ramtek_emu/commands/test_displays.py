@@ -13,7 +13,7 @@ from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, WriteError, instruct
 from ramtek_emu.command_line import ENDING
 from ramtek_emu.commands.displays import Run, running
 from ramtek_emu.commands.ramtek import ramtek
-from ramtek_emu.inspection.replay import Replay
+from ramtek_emu.inspection.inspector import Inspector
 from ramtek_emu.writing import Output
 from tests.ramtek_emu.processes import PipedHost, address_of, ended, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
@@ -186,12 +186,13 @@ def test_the_inspector_hints_at_the_end_of_a_dark_stream_and_with_its_picture(
     path, hints = tmp_path / "outline.ramtek", []
     path.write_bytes(stream(OUTLINE))
 
-    def look(replay: Replay, _: str, hint: Callable[[float], str]) -> None:
+    def look(inspector: Inspector, hint: Callable[[float], str]) -> None:
+        replay = inspector.session.replay
         for number in (0, len(replay.stream) - 1, len(replay.stream)):
             replay.go_to(number)
             hints.append([hint(seconds) for seconds in (1.0, 3.0)][1])
 
-    monkeypatch.setattr("ramtek_emu.inspection.inspector.inspect", look)
+    monkeypatch.setattr("ramtek_emu.inspection.inspector.Inspector.run", look)
     CliRunner().invoke(ramtek, ["inspect", str(path)], catch_exceptions=False)
     assert hints[:2] == ["", ""]
     drawn = CliRunner().invoke(ramtek, ["inspect", str(path), "-o", str(tmp_path / "a.png")])

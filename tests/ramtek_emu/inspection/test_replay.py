@@ -130,7 +130,6 @@ def test_instructions_are_counted_as_the_listing_shows_them(
     assert len(stream) == len(listed) == len(stream.opcodes)
     for number, item in enumerate(listed, 1):
         assert list(stream.item(number).lines()) == list(item.lines())
-        assert stream.place(number) == item.place
         assert stream.opcodes[number - 1] == item.words[0] >> 8
     assert stream.words.tolist() == words
     assert stream.words_between(0, len(stream)).tolist() == words[: stream.ends[-1]]
