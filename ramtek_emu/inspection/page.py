@@ -174,10 +174,6 @@ class InspectorPage:
             pixels[first:end] = self._pixels[first:end]
         return self._drawn, tuple(runs)
 
-    def table(self) -> PackedColors:
-        """The colors of all words of the display."""
-        return display_of(self.session).scan_out.table()
-
     def field(self) -> Colors:
         """The field of the display, without the page around it."""
         return display_of(self.session).field()
@@ -269,7 +265,8 @@ class InspectorPage:
     def _cells(self) -> Any:
         """The words at the pixels of the page of entries."""
         stage = self.layout.stage
-        return cells(len(self.table()), stage.height - 2 * EDGE, stage.width - 2 * EDGE)
+        words = len(display_of(self.session).scan_out.table())
+        return cells(words, stage.height - 2 * EDGE, stage.width - 2 * EDGE)
 
     def _draw_bar(self, bar: PackedColors, prepared: int) -> None:
         session = self.session
@@ -320,6 +317,6 @@ class InspectorPage:
             min(max(at - EDGE, 0), size - 1)
             for at, size in zip((place.line, place.element), words.shape, strict=True)
         )
-        word = int(words[line, element])
-        entry = display_of(self.session).scan_out.first_entry + word
-        return EntryRange(entry, entry + 1) if word < len(self.table()) else None
+        word, scan_out = int(words[line, element]), display_of(self.session).scan_out
+        entry = scan_out.first_entry + word
+        return EntryRange(entry, entry + 1) if word < len(scan_out.table()) else None

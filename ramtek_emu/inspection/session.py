@@ -343,10 +343,9 @@ def memory_window(display: Ramtek9300, first: Point, last: Point) -> Window:
 
 def parameter_texts(display: Ramtek9300) -> dict[str, str]:
     """The values of a display's parameters by their names, as the listing writes operands."""
-    state = display.state()
-    values = {name: state["parameters"][name] for name in PARAMETERS}
-    values |= {"saved": len(state["processor"]["saved"])}
-    values |= {"next entry": state["lookup_table"]["table_address"]}
+    state = display.processor.parameters.state()
+    values = {name: state[name] for name in PARAMETERS}
+    values |= {"saved": len(display.processor.saved), "next entry": display.lookup_table.address}
     short = {"display_class": "class", "origin_at_bottom": "at bottom"}
     return {
         short.get(name, name.replace("_", " ")): value_text(name, value) for name, value in values.items()

@@ -15,6 +15,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -30,7 +31,6 @@ from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.errors import NoScreenError, escaped
 from ramtek_emu.monitor.boxes import PageBox
 from ramtek_emu.monitor.input_queue import Close, InputQueue, Key, Pointer
-from ramtek_emu.monitor.overlay import Overlay
 from ramtek_emu.video.scan_out import Run
 
 KEY_DELAY: Final = 400
@@ -88,10 +88,6 @@ class FieldSource(Protocol):
 
         Returns their new stamp, and the lines that have changed as runs from the top.
         """
-        ...
-
-    def table(self) -> PackedColors:
-        """The colors of all words, 0x00RRGGBB."""
         ...
 
     def field(self) -> Colors:
@@ -202,24 +198,25 @@ class Glass:
         self._redrawn += 1
         self._shown = None
 
-    def show(self, source: FieldSource, overlay: Overlay, title: str, hides_mouse: bool) -> None:
-        """Show the current field with its overlay, and show or hide the pointer of the mouse."""
+    def show(
+        self, source: FieldSource, draw_over: Callable[[PackedColors], None] | None, hides_mouse: bool
+    ) -> None:
+        """Show the current field, with something drawn over it, and show or hide the pointer of the mouse."""
         pygame.mouse.set_visible(not hides_mouse)
         screen = pygame.display.get_surface()
         place = viewport(self._size, screen.get_size(), self.fit)
         is_direct = screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS
         surface = screen if is_direct else self._field
         last = self._shown[2] if self._shown is not None and self._shown[:2] == (surface, place) else None
-        has_overlay = any(overlay.stamp)
         # The surface is locked while the array exists.
         pixels = np.asarray(surface.get_view("2")).T
         stamp, changed = source.scan_out_changes_into(pixels, last)
-        if has_overlay:
-            overlay.draw(pixels, source.table(), title)
+        if draw_over is not None:
+            draw_over(pixels)
         del pixels
-        self._shown = None if has_overlay else (surface, place, stamp)
+        self._shown = (surface, place, stamp) if draw_over is None else None
         is_blurred = self._is_blurred(place)
-        if last is None or has_overlay or is_blurred:
+        if last is None or draw_over is not None or is_blurred:
             if not is_direct:
                 screen.fill((0, 0, 0))
                 self._enlarge(screen, place, (0, self._size[1]))

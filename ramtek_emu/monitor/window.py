@@ -212,7 +212,9 @@ class Monitor:
         # Hide the mouse pointer while a cursor of the display follows the mouse.
         driven = self.display.joystick.driven if self._source is None else ()
         hides_mouse = any(cursor.is_visible for cursor in driven)
-        self._glass.show(self.source, self.overlay, self._caption, hides_mouse)
+        table = self.display.scan_out.table()
+        draw_over = partial(self.overlay.draw, colors=table, title=self._caption)
+        self._glass.show(self.source, draw_over if any(self.overlay.stamp) else None, hides_mouse)
         if self._film is not None:
             self._film.show(self.source.field(), time.monotonic())
             if self._film.is_full:
