@@ -51,14 +51,6 @@ def test_recoloring_writes_no_word_and_changes_the_field() -> None:
     assert (display.field() == (9, 8, 7)).all()
 
 
-def test_only_the_visible_part_of_the_memory_is_shown() -> None:
-    display = Ramtek9300(Configuration(name="TALL", elements=8, lines=8, planes=10, visible_lines=5))
-    display.send(instructions.load_entries(0, np.repeat(np.arange(256)[:, None], 3, axis=1)))
-    display.send(instructions.write_image(np.arange(64).reshape(8, 8)))
-    assert display.words.shape == (8, 8)
-    assert display.field()[..., 0].tolist() == np.arange(40).reshape(5, 8).tolist()
-
-
 PLACES = st.tuples(st.integers(0, 8), st.integers(0, 12))
 
 
