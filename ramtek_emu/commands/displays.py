@@ -311,7 +311,7 @@ def show(
     While `waits()` is true, `serve_for` itself waits for a host's words, and the window does not wait for
     input.
     """
-    from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
+    from ramtek_emu.monitor.window import Monitor
 
     def tick() -> None:
         if run.ends:
@@ -322,12 +322,7 @@ def show(
                 monitor.tell(hint)
 
     monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
-    monitor.open()
-    try:
-        while monitor.is_open:
-            monitor.step(0 if waits() else TICK_MILLISECONDS)
-    finally:
-        monitor.close()
+    monitor.run(waits)
 
 
 def tell_the_end(session: HostSession) -> None:

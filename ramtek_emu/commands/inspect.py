@@ -22,7 +22,6 @@ from ramtek_emu.commands.displays import (
 from ramtek_emu.writing import write_atomically
 
 if TYPE_CHECKING:
-    from ramtek_emu.inspection.histories import Write
     from ramtek_emu.inspection.replay import Replay
 
 EXAMPLES: Final = """\b
@@ -181,21 +180,16 @@ def answer(replay: Replay, pixel: tuple[int, int], until: int, as_json: bool) ->
 
     writes = finished(history_of(replay, Window(*pixel, *pixel), until))[::-1]
     if as_json:
-        rows = (json.dumps(plain_write(replay, write)) for write in writes)
-        click.echo("[" + ",\n ".join(rows) + "]")
+        rows = (
+            write._asdict() | {"instruction": replay.stream.item(write.number).to_plain()} for write in writes
+        )
+        click.echo("[" + ",\n ".join(map(json.dumps, rows)) + "]")
         return
     for write in writes:
         listed = next(replay.stream.item(write.number).lines())
         click.echo(f"{write.number:>8}  {write.before:04X} -> {write.after:04X}  {listed}")
     if not writes:
         tell(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")
-
-
-def plain_write(replay: Replay, write: Write) -> dict[str, Any]:
-    """A write in plain values, with its instruction as `ramtek list --json` writes it."""
-    return {"number": write.number, "before": write.before, "after": write.after} | {
-        "instruction": replay.stream.item(write.number).to_plain()
-    }
 
 
 def plain_moment(replay: Replay) -> dict[str, Any]:

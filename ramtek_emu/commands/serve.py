@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from ramtek_emu.commands.displays import Run
     from ramtek_emu.host.pipe import Read, Write
     from ramtek_emu.host.server import Server
-    from ramtek_emu.inspection.replay import Replay
 
 EXAMPLES: Final = """\b
 Examples:
@@ -122,36 +121,29 @@ def serve(
     from ramtek_emu.host.server import TcpServer, UnixServer
 
     with running(display, output, snapshot, record, force) as run:
-        inspected: Replay | None = None
-        recording = run.record
-        if inspect:
-            from ramtek_emu.inspection.running_host import recording_into, replay_from
-
-            inspected = replay_from(display)
-            recording = recording_into(inspected, run.record)
         lines = None if joystick is None else JoystickLines(joystick, tell)
         server: TcpServer | UnixServer | PipeServer
         if unix is not None:
-            server = UnixServer(display, unix, idle_seconds=idle, record=recording)
+            server = UnixServer(display, unix, idle_seconds=idle, record=run.record)
         elif port is not None:
-            server = TcpServer(display, port, host, idle_seconds=idle, record=recording)
+            server = TcpServer(display, port, host, idle_seconds=idle, record=run.record)
         else:
-            server = PipeServer(display, *standard_streams(run), recording)
+            server = PipeServer(display, *standard_streams(run), run.record)
 
         def obey() -> None:
             if lines is not None:
                 lines.obey(display.joystick, server.session.reset)
 
         with server:
-            if window or inspected is not None:
+            if window or inspect:
                 from ramtek_emu.monitor.window import open_screen
 
                 # Fail before the address is printed.
                 open_screen()
             if server.address:
                 announce(server.address, host)
-            if window or inspected is not None:
-                watch(server, run, obey, inspected)
+            if window or inspect:
+                watch(server, run, obey, inspect)
             elif isinstance(server, PipeServer) and joystick is None:
                 server.serve(lambda: run.ends)
             else:
@@ -173,16 +165,16 @@ def refuse_options_without_effect(context: click.Context) -> None:
             )
 
 
-def watch(server: Server, run: Run, obey: Callable[[], object], inspected: Replay | None) -> None:
+def watch(server: Server, run: Run, obey: Callable[[], object], inspect: bool) -> None:
     """Show the display in a window, or in that of an inspector, until it is closed or a signal ends it."""
     from ramtek_emu.host.server import HOST_SECONDS
 
-    if inspected is not None:
+    if inspect:
         from ramtek_emu.inspection.inspector import Inspector
         from ramtek_emu.inspection.running_host import RunningHost
         from ramtek_emu.inspection.session import inspection_of
 
-        session = inspection_of(inspected, RunningHost(server, inspected, obey))
+        session = inspection_of(RunningHost(server, obey))
         name = server.display.configuration.name.replace("_", " ")
         hint = partial(run.hint_at_rest, server.display)
         Inspector(session, f"RAMTEK {name}").run(hint, lambda: run.ends)

@@ -78,7 +78,7 @@ class HostSession:
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
         self._left = NO_WORDS
-        self._record_bytes = record
+        self.record = record
         self.leave()
 
     @property
@@ -130,8 +130,8 @@ class HostSession:
                 self._left = words[place:]
 
     def _record(self, words: Words) -> None:
-        if self._record_bytes is not None:
-            self._record_bytes(words.astype("<u2", copy=False).tobytes())
+        if self.record is not None:
+            self.record(words.astype("<u2", copy=False).tobytes())
 
     def _reply(self) -> bytes:
         count = min(self.display.processor.waiting, REPLY_PIECE)

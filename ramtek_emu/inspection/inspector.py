@@ -22,13 +22,10 @@ from ramtek_emu.inspection.page import InspectorPage, layout_of
 from ramtek_emu.inspection.session import Inspection, display_of
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.monitor.overlay import KEYS
-from ramtek_emu.monitor.window import LEFT, RIGHT, TICK_MILLISECONDS, Key, Monitor, Pointer
+from ramtek_emu.monitor.window import LEFT, RIGHT, Key, Monitor, Pointer
 from ramtek_emu.snapshot import snapshot_bytes
 from ramtek_emu.video.scan_out import turned
 from ramtek_emu.writing import PNG, write_numbered
-
-Hint = Callable[[float], str]
-"""A function that returns a message for people at a time of `time.monotonic`, or ""."""
 
 
 class Inspector:
@@ -61,21 +58,27 @@ class Inspector:
         """The inspection that is shown."""
         return self.page.session
 
-    def _do(self, action: Callable[..., Inspection], *values: object) -> None:
+    def _do(self, action: Callable[..., Inspection], *values: object, **named: object) -> None:
         """Show the inspection after an action."""
-        self.page.session = action(self.page.session, *values)
+        self.page.session = action(self.page.session, *values, **named)
 
-    def run(self, hint: Hint = lambda _: "", ends: Callable[[], bool] = lambda: False) -> None:
-        """Keep the window open until it is closed, or until `ends()` is true; NoScreenError."""
-        monitor = self.monitor
-        monitor.open()
-        try:
-            while monitor.is_open and not ends():
-                monitor.step(0 if sessions.is_busy(self.session) else TICK_MILLISECONDS)
-                if message := hint(time.monotonic()):
-                    monitor.tell(message)
-        finally:
-            monitor.close()
+    def run(
+        self, hint: Callable[[float], str] = lambda _: "", ends: Callable[[], bool] = lambda: False
+    ) -> None:
+        """Keep the window open until it is closed, or until `ends()` is true; NoScreenError.
+
+        `hint` returns a message for people at a time of `time.monotonic`, or "".
+        """
+
+        def tick() -> None:
+            self._do(sessions.tick)
+            if message := hint(time.monotonic()):
+                self._do(sessions.tell, message)
+            if ends():
+                self.monitor.close()
+
+        self.monitor.on_tick = tick
+        self.monitor.run(lambda: sessions.is_busy(self.session))
 
     def press(self, key: Key) -> bool:
         """Handle a key; returns whether it means something here."""
@@ -110,7 +113,7 @@ class Inspector:
             # The mouse is the joystick over the field, and beyond it while a button is down.
             on_field = page.field_place(place)
             self.monitor.steer(pointer._replace(element=on_field.element, line=on_field.line))
-            self._do(point_at, on_field)
+            self._do(replace, pointed=on_field)
             if pointer.action != "move":
                 self._anchor = "joystick" if pointer.action == "press" else ""
         elif pointer.action == "press" and is_left:
@@ -140,11 +143,11 @@ class Inspector:
             self._do(sessions.go, page.number_at(place.element))
             return
         if part != "stage" or self.session.page == "help":
-            self._do(point_at)
+            self._do(replace, pointed=None)
         elif self.session.page == "entries":
-            self._do(point_at, page.entry_at(place))
+            self._do(replace, pointed=page.entry_at(place))
         else:
-            self._do(point_at, page.field_place(place))
+            self._do(replace, pointed=page.field_place(place))
         if self._anchor == "stage" and place != self._anchor_place:
             self._select_to(place, is_final=False)
 
@@ -180,11 +183,6 @@ class KeyBinding(NamedTuple):
     def keys(self) -> list[str]:
         """The names of the keys, with "shift+" before a name."""
         return self.text.lower().split(", ")
-
-
-def point_at(session: Inspection, pointed: Point | EntryRange | None = None) -> Inspection:
-    """Note the place of the screen, or the entry, under the pointer."""
-    return replace(session, pointed=pointed)
 
 
 def turn_table(session: Inspection) -> Inspection:

@@ -52,15 +52,14 @@ def row_at(stream: Stream, number: int) -> range:
     """The instructions in the row of an instruction: equal polls, or itself; 0 is the start."""
     if number == 0:
         return range(1)
-    place = stream.place(number)
-    if int(stream.words[place]) >> 8 not in POLLS:
+    if int(stream.words[stream.ends[number - 1]]) >> 8 not in POLLS:
         return range(number, number + 1)
     return range(number - _equal(stream, number, -1), number + 1 + _equal(stream, number, 1))
 
 
 def _equal(stream: Stream, number: int, direction: int) -> int:
     """How many instructions before or after an instruction, in a row, have its words."""
-    words, place = stream.words_between(number - 1, number), stream.place(number)
+    words, place = stream.words_between(number - 1, number), stream.ends[number - 1]
     most, count = (len(stream) - number if direction > 0 else number - 1), 64
     while True:
         steps = direction * np.arange(1, min(count, most) + 1)

@@ -10,10 +10,8 @@ is reached and every other half second. An orange ring is around what is selecte
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from functools import partial
-from operator import attrgetter
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -40,7 +38,7 @@ from ramtek_emu.monitor.boxes import (
     mark,
     write_rows,
 )
-from ramtek_emu.video.scan_out import Run, united
+from ramtek_emu.video.scan_out import Run
 
 GAP: Final = 8
 SIDE_CHARACTERS: Final = 64
@@ -144,9 +142,7 @@ class InspectorPage:
         self._shown: dict[str, Any] = {}
         """What the parts of the page show."""
         self._drawn: Any = None
-        self._before: Any = None
-        self._changed: list[Run] = []
-        """The lines that the last drawing changed."""
+        """The stamp of the page as it is drawn."""
 
     # A field for the window.
 
@@ -169,23 +165,14 @@ class InspectorPage:
         has_written = session.replay.written is not None and session.replay.number == session.number
         return has_written and not session.is_following and phase == self.blink_is_on
 
-    def lines_changed_since(self, last: Any) -> tuple[Run, ...]:
-        """The lines that may have changed since the page with the stamp `last`; all lines for None."""
+    def scan_out_changes_into(self, pixels: PackedColors, _: Any) -> tuple[Any, tuple[Run, ...]]:
+        """Bring any pixels up to date; returns their stamp, and the lines that differed."""
         self.draw()
-        if last == self._drawn:
-            return ()
-        is_next = last is not None and last == self._before
-        return united(self._changed if is_next else [(0, self.lines)], self.lines)
-
-    def scan_out_changes_into(self, pixels: PackedColors, last: Any) -> Any:
-        """Bring pixels with the stamp `last` up to date, and return their new stamp."""
-        for first, end in self.lines_changed_since(last):
+        differing = np.flatnonzero((pixels != self._pixels).any(axis=1))
+        runs = [(int(differing[0]), int(differing[-1]) + 1)] if len(differing) else []
+        for first, end in runs:
             pixels[first:end] = self._pixels[first:end]
-        return self._drawn
-
-    def table(self) -> PackedColors:
-        """The colors of all words of the display."""
-        return display_of(self.session).scan_out.table()
+        return self._drawn, tuple(runs)
 
     def field(self) -> Colors:
         """The field of the display, without the page around it."""
@@ -204,7 +191,7 @@ class InspectorPage:
         if stamp == self._drawn:
             return
         session, layout = self.session, self.layout
-        self._before, self._drawn, self._changed = self._drawn, stamp, []
+        self._drawn = stamp
         marks = self._marks_are_shown and session.number
         self._part(
             "stage", layout.stage, (stamp[2:], marks, session.page, session.selection), self._draw_stage
@@ -222,7 +209,6 @@ class InspectorPage:
             pixels = box.of(self._pixels)
             pixels[...] = BLACK
             draw(pixels)
-            self._changed.append((box.top, box.top + box.height))
 
     def _rows(self) -> dict[str, Sequence[Line]]:
         """The rows of the panels."""
@@ -279,19 +265,15 @@ class InspectorPage:
     def _cells(self) -> Any:
         """The words at the pixels of the page of entries."""
         stage = self.layout.stage
-        return cells(len(self.table()), stage.height - 2 * EDGE, stage.width - 2 * EDGE)
+        words = len(display_of(self.session).scan_out.table())
+        return cells(words, stage.height - 2 * EDGE, stage.width - 2 * EDGE)
 
     def _draw_bar(self, bar: PackedColors, prepared: int) -> None:
-        session, last = self.session, self.layout.bar.width - 1
+        session = self.session
         bar[...] = RAISED
         bar[:, : self.bar_place(prepared) + 1] = PREPARED
-        writes, index = session.writes or (), 0
-        while index < len(writes):
-            place = self.bar_place(writes[index].number)
+        for place in {self.bar_place(write.number) for write in session.writes or ()}:
             bar[3:-3, place] = ORANGE
-            # Skip the other writes at this place.
-            following = -(-(place + 1) * session.length // last)
-            index = bisect_left(writes, following, key=attrgetter("number"))
         for number, color in ((session.target, GRAY), (session.number, WHITE)):
             place = self.bar_place(number)
             bar[:, max(0, place - 1) : place + 2] = color
@@ -335,6 +317,6 @@ class InspectorPage:
             min(max(at - EDGE, 0), size - 1)
             for at, size in zip((place.line, place.element), words.shape, strict=True)
         )
-        word = int(words[line, element])
-        entry = display_of(self.session).scan_out.first_entry + word
-        return EntryRange(entry, entry + 1) if word < len(self.table()) else None
+        word, scan_out = int(words[line, element]), display_of(self.session).scan_out
+        entry = scan_out.first_entry + word
+        return EntryRange(entry, entry + 1) if word < len(scan_out.table()) else None

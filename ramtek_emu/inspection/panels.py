@@ -119,7 +119,7 @@ def texts_at_reset(configuration: Configuration) -> dict[str, str]:
 def cursors(session: Inspection) -> list[Line]:
     """A line for each cursor: its place, and what is on; the joystick's switches in the first."""
     lines: list[Line] = []
-    state = display_of(session).state()["cursors"]
+    state = display_of(session).cursors.state()
     for number, cursor in enumerate(state["cursors"]):
         switches = {
             "visible": cursor["state"] & VISIBLE,

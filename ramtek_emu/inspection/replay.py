@@ -41,9 +41,7 @@ class Replay:
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
         """Begin with a display as it is at power-on, or like `start` without its pending words."""
-        self._begin(stream, Ramtek9300(stream.configuration) if start is None else start)
-
-    def _begin(self, stream: Stream, start: Ramtek9300) -> None:
+        start = Ramtek9300(stream.configuration) if start is None else start
         self.stream = stream
         self.number = 0
         """How many instructions the display has executed; 0 is power-on."""
@@ -57,9 +55,10 @@ class Replay:
         self._packer = Packer()
         self._seconds = STATE_SECONDS
         self._due = 0.0
-        self._bytes = 0
+        self.state_bytes = 0
+        """The bytes that the states take."""
         self._states: list[State] = []
-        self._keep(self._packer.pack(start, 0))
+        self._keep(start, 0, np.ones(start.words.shape, np.bool_))
         self.display = self.display_at(0)
         """The display after `number` instructions."""
         self.display.scan_out.shown_table = start.scan_out.shown_table
@@ -73,21 +72,15 @@ class Replay:
         """The number of instructions up to which states are kept."""
         return self._states[-1].number
 
-    @property
-    def state_bytes(self) -> int:
-        """The bytes that the states take."""
-        return self._bytes
-
     def prepare_for(self, seconds: float) -> bool:
         """Run on for up to `seconds`, and keep states; returns whether instructions are left."""
         end = perf_counter() + seconds
         for _ in self._preparing:
             if perf_counter() >= end:
                 break
-        if self.prepared < len(self.stream):
-            return True
-        self._preparing = self._prepare()
-        return False
+        else:
+            self._preparing = self._prepare()
+        return self.prepared < len(self.stream)
 
     def _prepare(self) -> Iterator[None]:
         """Run a display over the stream, and keep states; pauses after each instruction."""
@@ -102,24 +95,25 @@ class Replay:
                 if thread_time() >= due:
                     break
                 yield
-            self._keep(self._packer.pack(display, number, np.packbits(touched, axis=1)))
+            self._keep(display, number, touched)
             yield
 
-    def _keep(self, state: State) -> None:
+    def _keep(self, display: Ramtek9300, number: int, touched: Dots) -> None:
         """Keep a state, in place of an older state with its number; drop states if there are too many."""
+        state = self._packer.pack(display, number, touched)
         if self._states and self._states[-1].number == state.number:
             self._drop_last()
-        self._bytes += self._bytes_of_next(state)
+        self.state_bytes += self._bytes_of_next(state)
         self._states.append(state)
         most = max(LEAST_STATE_BYTES, STATE_BYTES * len(self.stream.words))
-        if self._bytes > most:
+        if self.state_bytes > most:
             self._seconds *= 2
             self._states = thinned(self._states)
-            self._bytes = size_of(self._states)
+            self.state_bytes = size_of(self._states)
 
     def _drop_last(self) -> None:
         state = self._states.pop()
-        self._bytes -= self._bytes_of_next(state)
+        self.state_bytes -= self._bytes_of_next(state)
 
     def _bytes_of_next(self, state: State) -> int:
         """The bytes of a state that follows the last state and shares blocks with it."""
@@ -144,12 +138,8 @@ class Replay:
         and a state is due.
         """
         if has_moved or (self.prepared < len(self.stream) and thread_time() >= self._due):
-            self._keep(self._packer.pack(display, len(self.stream)))
+            self._keep(display, len(self.stream), np.ones(display.words.shape, np.bool_))
             self._due = thread_time() + self._seconds
-
-    def forget(self, display: Ramtek9300) -> None:
-        """Begin again with an empty stream and a display as it is now."""
-        self._begin(Stream(self.stream.configuration), display)
 
     def go_to(self, number: int) -> None:
         """Bring the display to an instruction, forward or back."""
@@ -184,18 +174,16 @@ class Replay:
         """The last state that was kept before an instruction, or after it exactly."""
         return self._states[bisect_right(self._states, number, key=attrgetter("number")) - 1]
 
-    def stretches(self, window: Window, after: int, until: int) -> Iterator[tuple[int, int, bool]]:
-        """The parts of the stream between states, from the instruction after `after` up to `until`.
+    def stretches(self, window: Window, after: int, until: int) -> list[tuple[int, int]]:
+        """The parts of the stream between states that may write to a window: (the number before, the last).
 
-        Yields the number before each part, its last number, and whether it may write to a window.
+        Only instructions after `after` and up to `until` are in them.
         """
-        # A running host adds states meanwhile.
-        for state, following in pairwise([*self._states, None]):
-            assert state is not None
-            begin = max(state.number, after)
-            end = until if following is None else min(following.number, until)
-            if end > begin:
-                yield begin, end, following is None or following.may_touch(window)
+        pairs = pairwise(self._states)
+        parts = [(state.number, later.number) for state, later in pairs if later.may_touch(window)]
+        parts.append((self.prepared, until))
+        clipped = ((max(begin, after), min(end, until)) for begin, end in parts)
+        return [(begin, end) for begin, end in clipped if begin < end]
 
     def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
         """Run a display from `number` to `end`; yields the number after each instruction."""

@@ -85,10 +85,11 @@ class Inspection:
         return len(self.replay.stream)
 
 
-def inspection_of(replay: Replay, host: RunningHost | None = None) -> Inspection:
-    """The inspection of a replay where it stands; with a host and its replay, of a running display."""
-    number = replay.number if host is None else len(replay.stream)
-    return Inspection(replay=replay, host=host, number=number, target=number, is_following=host is not None)
+def inspection_of(inspected: Replay | RunningHost) -> Inspection:
+    """The inspection of a replay where it stands, or of the running display of a host."""
+    if isinstance(inspected, RunningHost):
+        return go_on(Inspection(replay=inspected.replay, host=inspected))
+    return Inspection(replay=inspected, number=inspected.number, target=inspected.number)
 
 
 # The display and the position.
@@ -104,7 +105,7 @@ def display_of(session: Inspection) -> Ramtek9300:
 
 def is_busy(session: Inspection) -> bool:
     """Whether a tick has work to do, or waits for a host itself."""
-    if session.is_following and session.host is not None and session.host.is_connected:
+    if session.is_following and session.host is not None and session.host.server.busy:
         return True
     return session.work is not None or session.number != session.target or is_preparing(session)
 
@@ -155,11 +156,10 @@ def tick(session: Inspection) -> Inspection:
 
 def _served(session: Inspection, host: RunningHost) -> Inspection:
     """Serve the host, and stand at its last instruction unless it is paused."""
-    stream = session.replay.stream
     host.serve(not session.is_following)
-    if session.replay.stream is not stream:
+    if session.replay is not host.replay:
         message = f"the instructions took {MOST_BYTES >> 20} MB of memory: they are counted from here on"
-        session = tell(select(session, None), message)
+        session = tell(replace(select(session, None), replay=host.replay), message)
     return _followed(session) if session.is_following and session.length != session.number else session
 
 
@@ -206,9 +206,15 @@ def stopped(session: Inspection) -> Inspection:
 # Searches.
 
 
-def find(session: Inspection, back: bool = False) -> Inspection:
-    """Go to the next instruction whose row of the listing has the typed text, or to the last one before."""
-    text = (session.typed or "").strip() or session.text
+def enter(session: Inspection, back: bool = False) -> Inspection:
+    """Go to the instruction whose number was typed; else to the next whose listing has the text, or back.
+
+    A text stays typed, to be found again.
+    """
+    typed = session.typed or ""
+    if typed.isascii() and typed.isdigit():
+        return go(replace(session, typed=None), int(typed))
+    text = typed.strip() or session.text
     session = replace(pause(session), text=text)
     if not text:
         return tell(session, "type a text of the listing first, such as FORE=7 or WI WIN=")
@@ -265,14 +271,6 @@ def select(session: Inspection, selection: Selection | None, is_final: bool = Tr
 def ask(session: Inspection, typed: str = "") -> Inspection:
     """Begin, or go on, to type an instruction's number or a text of the listing."""
     return replace(session, typed=typed, message="")
-
-
-def enter(session: Inspection, back: bool = False) -> Inspection:
-    """Go to the instruction whose number was typed; else find the text, and stay at typing."""
-    typed = session.typed or ""
-    if typed.isascii() and typed.isdigit():
-        return go(replace(session, typed=None), int(typed))
-    return find(session, back)
 
 
 def escape(session: Inspection) -> Inspection:
@@ -334,22 +332,20 @@ def memory_window(display: Ramtek9300, first: Point, last: Point) -> Window:
 
     If the view wraps around an edge of the memory between them, the rectangle ends at that edge.
     """
-    elements, lines = shown_pixels(display)
+    sizes, parameters = display.configuration, display.processor.parameters
     left, right = sorted((first.element, last.element))
-    top, bottom = sorted((first.line, last.line))
-    elements, lines = elements[left : right + 1], lines[top : bottom + 1]
-    if display.processor.parameters.origin_at_bottom:
-        lines = lines[::-1]
-    ends = (int(places[places >= places[0]].max()) for places in (elements, lines))
-    return Window(int(elements[0]), int(lines[0]), *ends)
+    top, bottom = sorted((first.line, last.line), reverse=parameters.origin_at_bottom)
+    left, top = pixel_at(parameters, sizes, left, top)
+    right, bottom = pixel_at(parameters, sizes, right, bottom)
+    ends = right if right >= left else sizes.elements - 1, bottom if bottom >= top else sizes.lines - 1
+    return Window(left, top, *ends)
 
 
 def parameter_texts(display: Ramtek9300) -> dict[str, str]:
     """The values of a display's parameters by their names, as the listing writes operands."""
-    state = display.state()
-    values = {name: state["parameters"][name] for name in PARAMETERS}
-    values |= {"saved": len(state["processor"]["saved"])}
-    values |= {"next entry": state["lookup_table"]["table_address"]}
+    state = display.processor.parameters.state()
+    values = {name: state[name] for name in PARAMETERS}
+    values |= {"saved": len(display.processor.saved), "next entry": display.lookup_table.address}
     short = {"display_class": "class", "origin_at_bottom": "at bottom"}
     return {
         short.get(name, name.replace("_", " ")): value_text(name, value) for name, value in values.items()

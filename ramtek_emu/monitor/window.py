@@ -175,13 +175,16 @@ class Monitor:
         self.overlay.message = message if self.full_screen else ""
         self._set_title(message)
 
-    def run(self) -> None:
-        """Keep the window open until it is closed; open it first if it is not."""
+    def run(self, is_busy: Callable[[], bool] = lambda: False) -> None:
+        """Keep the window open until it is closed; open it first if it is not.
+
+        While `is_busy()` is true, ticks follow each other without waiting for input.
+        """
         if not self.is_open:
             self.open()
         try:
             while self.is_open:
-                self.step(TICK_MILLISECONDS)
+                self.step(0 if is_busy() else TICK_MILLISECONDS)
         finally:
             self.close()
 
@@ -209,7 +212,9 @@ class Monitor:
         # Hide the mouse pointer while a cursor of the display follows the mouse.
         driven = self.display.joystick.driven if self._source is None else ()
         hides_mouse = any(cursor.is_visible for cursor in driven)
-        self._glass.show(self.source, self.overlay, self._caption, hides_mouse)
+        table = self.display.scan_out.table()
+        draw_over = partial(self.overlay.draw, colors=table, title=self._caption)
+        self._glass.show(self.source, draw_over if any(self.overlay.stamp) else None, hides_mouse)
         if self._film is not None:
             self._film.show(self.source.field(), time.monotonic())
             if self._film.is_full:
@@ -224,10 +229,6 @@ class Monitor:
         """Let the field fill the window, or show it at the largest whole multiple again."""
         self._glass.fit = not self._glass.fit
         self.tell("the picture fills the window" if self.fit else "the picture at a whole multiple")
-
-    def turn_table(self) -> None:
-        """Show the words through the next table of grays, or again through the table of the display."""
-        self.tell(turned(self._display.scan_out))
 
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
@@ -317,7 +318,7 @@ class Monitor:
         shortcuts |= {"q": self.ask_to_close} if key.control else {}
         pages: dict[str, Callable[[], object]] = {"f12": self._tell_of_screenshot}
         pages |= {name: partial(self.overlay.turn_to, page) for name, page in PAGES.items()}
-        pages |= {"f2": self.turn_table} if self.on_key is None else {}
+        pages |= {"f2": lambda: self.tell(turned(self.display.scan_out))} if self.on_key is None else {}
         if key.name in MODIFIERS:
             return
         if key.name not in shortcuts and self.on_key is not None and self.on_key(key):

@@ -68,6 +68,7 @@ DARKEST: Final = 64
 """Assumed: the gray of word 1 in the table "gray", 25 % of white, well apart from black."""
 
 
+@lru_cache(2)
 def gray_table(name: str, words: int) -> PackedColors:
     """The colors 0x00RRGGBB of the first `words` words, (words,) uint32, in a table of `TABLES`.
 
@@ -122,11 +123,6 @@ class ScanOut:
         """The count of words written and the view when the indices were computed."""
         shown_words = self._frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
-        self._gray: tuple[int, PackedColors] = (-1, self._lookup_table.packed)
-        self._gray_tables = {name: gray_table(name, self._words) for name in TABLES}
-
-    def __repr__(self) -> str:
-        return f"ScanOut({self.elements} x {self.lines})"
 
     @property
     def stamp(self) -> Stamp:
@@ -162,36 +158,28 @@ class ScanOut:
             self.table().take(self._indices, out=pixels, mode="wrap")
         self._draw_cursors(pixels)
 
-    def lines_changed_since(self, last: Stamp | None) -> tuple[Run, ...]:
-        """The lines that may have changed since the field with the stamp `last`, as runs from the top.
+    def scan_out_changes_into(
+        self, pixels: PackedColors, last: Stamp | None
+    ) -> tuple[Stamp, tuple[Run, ...]]:
+        """Bring an array up to date with the current field; returns its stamp, and the runs of lines written.
 
-        A load of entries changes the lines that show the entries, and a moved cursor the lines of its old and
-        its new place. Any other change, or None, returns all lines.
+        `last` is the stamp of the field in the array; None if something else is in the array, or was drawn on
+        the field. A load of entries writes the lines that show the entries, and a moved cursor the lines of
+        its old and its new place. Any other change, or None, writes all lines.
         """
         stamp = self.stamp
         if last is None or last.rest != stamp.rest or self._beam is not None:
-            return ((0, self.lines),)
+            self.scan_out_into(pixels)
+            return stamp, ((0, self.lines),)
         self._update_indices()
         runs = [mark.lines for mark in set(last.marks) ^ set(stamp.marks)]
         if last.entries != stamp.entries:
             runs.append(self._lines_showing(self._lookup_table.entries_written_since(last.entries)))
-        return united(runs, self.lines)
-
-    def scan_out_changes_into(self, pixels: PackedColors, last: Stamp | None) -> Stamp:
-        """Bring an array up to date with the current field, and return the stamp of that field.
-
-        `last` is the stamp of the field in the array; None if something else is in the array, or was drawn on
-        the field. Only the lines that changed are written.
-        """
-        stamp = self.stamp
-        runs = self.lines_changed_since(last)
-        if runs == ((0, self.lines),):
-            self.scan_out_into(pixels)
-            return stamp
-        for first, end in runs:
+        changed = united(runs, self.lines)
+        for first, end in changed:
             self.table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
             self._draw_cursors(pixels[first:end], first)
-        return stamp
+        return stamp, changed
 
     def field(self) -> Colors:
         """The field, (lines, elements, 3) uint8: red, green, blue."""
@@ -282,17 +270,15 @@ class ScanOut:
 
     def table(self) -> PackedColors:
         """The colors of all words, 0x00RRGGBB: those of `shown_table`, or the display's."""
-        return self._gray_tables[self.shown_table] if self.shown_table else self._own_table()
+        return gray_table(self.shown_table, self._words) if self.shown_table else self._own_table()
 
     def _own_table(self) -> PackedColors:
         """The shown section of the display's table, in gray on a monochrome monitor."""
         table = self._lookup_table.packed
         if self._configuration.monochrome:
-            if self._gray[0] != self._lookup_table.written:
-                short = self._configuration.entry_format is EntryFormat.WORD_12
-                low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
-                self._gray = self._lookup_table.written, (low * 0x010101).astype(np.uint32)
-            table = self._gray[1]
+            short = self._configuration.entry_format is EntryFormat.WORD_12
+            low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
+            table = (low * 0x010101).astype(np.uint32)
         first = self.first_entry
         return table[first : first + self._words] if self._has_sections else table
 

@@ -11,7 +11,7 @@ from ramtek_emu import Configuration, Ramtek9300
 from ramtek_emu.host.server import HostSession, Server
 from ramtek_emu.inspection import session as module
 from ramtek_emu.inspection.replay import Replay
-from ramtek_emu.inspection.running_host import RunningHost, recording_into, replay_from
+from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import Inspection, display_of, inspection_of
 from ramtek_emu.monitor.boxes import Line
 from tests.ramtek_emu.inspection.replays import replay_of
@@ -66,11 +66,10 @@ class Served:
     """A host session that a stopped display executes, its inspection, and the replies to its host."""
 
     def __init__(self, display: Ramtek9300) -> None:
-        replay = replay_from(display)
-        self.session = self.host_session = HostSession(display, recording_into(replay))
+        self.session = self.host_session = HostSession(display)
         self.busy = False
-        self.host = RunningHost(cast(Server, self), replay)
-        self.inspection = Steps(inspection_of(replay, self.host))
+        self.host = RunningHost(cast(Server, self))
+        self.inspection = Steps(inspection_of(self.host))
         self.replies = b""
         self._waiting: Iterator[bytes] = iter(())
 

@@ -176,7 +176,7 @@ def test_no_key_has_two_meanings() -> None:
 
 def test_the_mouse_is_the_joystick_of_a_display_that_runs_and_inspects_a_paused_display() -> None:
     host = Served(Ramtek9300()).host
-    inspector = Inspector(inspection_of(host.replay, host))
+    inspector = Inspector(inspection_of(host))
     point(inspector, ("move", 30, 40), ("press", 31, 41), ("release", 32, 42))
     assert host.display.joystick.position == (32, 42)
     assert host.display.cursors.enter_is_pressed

@@ -111,8 +111,8 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
         action(session)
         at_rest(session)
         page.session = session.state
-        before, runs = shown.copy(), page.lines_changed_since(stamp)
-        stamp = page.scan_out_changes_into(shown, stamp)
+        before = shown.copy()
+        stamp, runs = page.scan_out_changes_into(shown, stamp)
         assert stamp == page.stamp
         fresh = InspectorPage(session.state, page.layout, BUTTONS, [("Esc", "back")], "a page")
         whole = np.zeros_like(shown)
@@ -122,22 +122,22 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
         for first, end in runs:
             unchanged[first:end] = False
         assert np.array_equal(shown[unchanged], before[unchanged])
-        assert page.lines_changed_since(stamp) == ()
+        assert page.scan_out_changes_into(shown, stamp) == (stamp, ())
 
 
 def test_a_message_and_the_pointer_change_only_their_lines() -> None:
     session = session_of(pattern(), configuration=CONFIGURATIONS["GMR_9300"])
     page = page_of(session)
-    stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
+    shown = np.zeros((page.lines, page.elements), np.uint32)
+    stamp, _ = page.scan_out_changes_into(shown, None)
     for state, name in (
         (tell(session.state, "a message"), "status"),
         (replace(tell(session.state, "a message"), pointed=Point(5, 5)), "pixels"),
     ):
         page.session = state
         box = page.layout.boxes[name]
-        ((first, end),) = page.lines_changed_since(stamp)
+        stamp, ((first, end),) = page.scan_out_changes_into(shown, stamp)
         assert box.top <= first < end <= box.top + box.height
-        stamp = page.stamp
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)

@@ -11,7 +11,7 @@ from ramtek_emu.host import server as module_of_servers
 from ramtek_emu.host.server import TcpServer
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection import running_host as module
-from ramtek_emu.inspection.running_host import RunningHost, recording_into, replay_from
+from ramtek_emu.inspection.running_host import RunningHost
 from ramtek_emu.inspection.session import inspection_of
 from tests.ramtek_emu.inspection.sessions import Served, Steps, text_of
 from tests.ramtek_emu.recorded_streams import OUTLINE
@@ -28,11 +28,9 @@ def small_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
-    display = Ramtek9300()
-    replay = replay_from(display)
-    with TcpServer(display, idle_seconds=5, record=recording_into(replay)) as server:
-        host = RunningHost(server, replay)
-        session = Steps(inspection_of(replay, host))
+    with TcpServer(Ramtek9300(), idle_seconds=5) as server:
+        host = RunningHost(server)
+        session, replay = Steps(inspection_of(host)), host.replay
         port = TcpPort(server.address)
         port.send(instructions.read_cursor(0))
         while not len(replay.stream):

@@ -138,14 +138,14 @@ def test_a_text_of_the_listing_is_found_forward_and_back() -> None:
     assert session.state.message == "no ers before instruction 1"
     for text, number in (("ERS BACK=7", 3), ("ERS WIN=", 4), ("LAM", 5), ("BACK=", 5), ("WI WIN=", 5)):
         session.ask(text)
-        session.find()
+        session.enter()
         assert at_rest(session).state.number == number, text
 
 
 def test_a_text_is_found_in_the_whole_listing_of_an_instruction() -> None:
     session = session_of(instructions.write_image(np.arange(117).reshape(9, 13)))
-    session.ask("0074")
-    session.find()
+    session.ask("0073 0074")
+    session.enter()
     assert at_rest(session).state.number == 1
 
 
