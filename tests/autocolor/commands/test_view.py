@@ -33,7 +33,7 @@ def monitors(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     class Driven(Monitor):
         script: Callable[[Any], object] = staticmethod(lambda monitor: None)
 
-        def run(self) -> None:
+        def run(self, _: object = None) -> None:
             opened.append(self)
             type(self).script(self)
 
@@ -231,7 +231,7 @@ class Waited:
                 waited.on_step(self)
                 return self.is_open
 
-            def run(self) -> None:
+            def run(self, _: object = None) -> None:
                 waited.captions.append(f"run: {self.caption}, open: {self.is_open}")
 
         monkeypatch.setattr(window, "Monitor", Stepped)
