@@ -42,22 +42,7 @@ def chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
 
 
 LEVEL: Final = 4
-"""The compression of a PNG file by default: from 0, fastest, to 9, smallest.
-
-Measured: eight pictures of 640 x 480 pixels (coupe, bracket, row of balls and teapot, with and without smooth
-edges), Pillow 13 with zlib-ng 2.3, processor time and bytes of one picture:
-
-| level | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7 | 8 | 9 |
-|---|---|---|---|---|---|---|---|---|---|---|
-| ms | 4.7 | 7.6 | 8.0 | 9.7 | 10.3 | 12.5 | 19.1 | 27.1 | 67.8 | 129.9 |
-| kB | 922 | 102 | 97 | 88 | 83 | 79 | 72 | 71 | 69 | 66 |
-
-Level 4 takes 54 % of the time of level 6, zlib's own default, for 15 % more bytes; level 3 takes 51 % for
-22 % more, and level 5 65 % for 9 % more.
-
-Measured and rejected: zlib's strategy of run lengths takes 41 % of the time for 25 % more bytes, and ignores
-the level. Its other strategies make larger files in the same time.
-"""
+"""The compression of a PNG file by default: from 0, fastest, to 9, smallest; see docs/PERFORMANCE.md."""
 
 
 def png_bytes(field: Colors, level: int | None = None) -> bytes:

@@ -13,6 +13,7 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from ramtek_emu import command_line
 from ramtek_emu.command_line import ENDING, SIGNALS
@@ -89,6 +90,14 @@ def display_asked_for(
         display = read_snapshot(start)
     display.scan_out.shown_table = table or ""
     return display
+
+
+def refuse_given(context: click.Context, where: str, *options: str) -> None:
+    """Refuse options of the command line that have no effect, such as "without --film"."""
+    for option in options:
+        if context.get_parameter_source(option) is ParameterSource.COMMANDLINE:
+            name = f"--{option.replace('_', '-')}"
+            raise click.UsageError(f"{name} must not be given {where}, where it has no effect; leave it out")
 
 
 def refuse_outputs(force: bool, *paths: str | None, pictures: Sequence[str | None] = ()) -> None:

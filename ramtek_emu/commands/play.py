@@ -14,6 +14,7 @@ from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
     open_stream,
+    refuse_given,
     refuse_outputs,
     running,
     show,
@@ -34,9 +35,6 @@ Examples:
   ramtek play circling_light.ramtek --film "circling/{number:04}.png"
   old_program | ramtek play - -o drawing.png --record drawing.ramtek
 """
-
-FRAMES_PER_SECOND: Final = 24.0
-"""Assumed: the rate of motion pictures, as of `autocolor animate`."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -64,11 +62,15 @@ FRAMES_PER_SECOND: Final = 24.0
     "--fps",
     # The limits are those of `films`, whose module would import Pillow for each command.
     type=click.FloatRange(0.1, 100),
+    default=24.0,
+    show_default=True,
     metavar="RATE",
-    help=f"Frames per second of the film, {FRAMES_PER_SECOND:g} if not given.",
+    help="Frames per second of the film.",
 )
 @click.option("--once", is_flag=True, help="Show the film once; otherwise it begins again at its end.")
+@click.pass_context
 def play(
+    context: click.Context,
     stream: str,
     output: str | None,
     snapshot: str | None,
@@ -80,7 +82,7 @@ def play(
     loads_per_second: int | None,
     film: str | None,
     every: int | None,
-    fps: float | None,
+    fps: float,
     once: bool,
 ) -> None:
     """Run STREAM, a file of 16-bit words with the low byte first; - is stdin.
@@ -89,9 +91,14 @@ def play(
     dropped.
     """
     in_window = output is None and snapshot is None and film is None
-    if loads_per_second is not None and not in_window:
-        raise click.UsageError("--loads-per-second is for the window; leave it out, or the outputs")
-    refuse_film(film, every, fps, once, force)
+    if not in_window:
+        refuse_given(context, "with an output", "loads_per_second")
+    if film is None:
+        refuse_given(context, "without --film", "every", "fps", "once")
+    else:
+        from ramtek_emu.films import check_film
+
+        check_film(film, fps, force)
     refuse_outputs(force, record, film, pictures=[output, snapshot])
     file = open_stream(stream)
     display = display_asked_for(configuration, start, table)
@@ -123,22 +130,10 @@ def play(
             is_cut = pipe.is_load if every is None else pipe.every(every)
             cut = pipe.stream_pieces(read, display.configuration, is_cut)
             fields = pipe.stream_fields(server.session, cut, lambda: run.ends)
-            write_fields(film, fields, run, fps or FRAMES_PER_SECOND, not once, force)
+            write_fields(film, fields, run, fps, not once, force)
         tell_the_end(server.session)
     if run.signal:
         raise Ended(run.signal)
-
-
-def refuse_film(film: str | None, every: int | None, fps: float | None, once: bool, force: bool) -> None:
-    """Refuse a film that cannot be written, and options of a film without a film, before the work."""
-    if film is None:
-        for option, value in (("--every", every), ("--fps", fps), ("--once", once or None)):
-            if value is not None:
-                raise click.UsageError(f"{option} is for a film; add --film FILE, or leave it out")
-        return
-    from ramtek_emu.films import check_film
-
-    check_film(film, fps or FRAMES_PER_SECOND, force)
 
 
 def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loop: bool, force: bool) -> None:

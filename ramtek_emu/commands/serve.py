@@ -11,11 +11,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
-from click.core import ParameterSource
 
 from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
+    refuse_given,
     refuse_outputs,
     running,
     show,
@@ -40,15 +40,6 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
-WITHOUT_EFFECT: Final = (
-    ("host", "unix"),
-    ("host", "stdio"),
-    ("idle", "stdio"),
-    ("once", "stdio"),
-    ("once", "window"),
-    ("once", "inspect"),
-)
-"""Options that have no effect beside the second option."""
 STEP_SECONDS: Final = 0.02
 """How long a line for the joystick, or a signal, may be unnoticed while no words arrive."""
 WRITTEN_AT_ONCE: Final[int] = getattr(select, "PIPE_BUF", 512)
@@ -112,7 +103,12 @@ def serve(
         raise click.UsageError(
             "stdin must be for words or for the joystick, not both; give --joystick a FIFO"
         )
-    refuse_options_without_effect(context)
+    if port is None:
+        refuse_given(context, "without --port", "host")
+    if stdio:
+        refuse_given(context, "with --stdio", "idle", "once")
+    if window or inspect:
+        refuse_given(context, "with a window", "once")
     refuse_outputs(force, record, pictures=[output, snapshot])
     display = display_asked_for(configuration, start, table)
 
@@ -153,16 +149,6 @@ def serve(
                 if isinstance(server, PipeServer):
                     server.finish(lambda: run.ends)
             (tell_the_end if stdio else tell_unexecuted)(server.session)
-
-
-def refuse_options_without_effect(context: click.Context) -> None:
-    """Refuse options that would do nothing beside the others."""
-    for option, other in WITHOUT_EFFECT:
-        is_given = context.get_parameter_source(option) is ParameterSource.COMMANDLINE
-        if is_given and context.params[other]:
-            raise click.UsageError(
-                f"--{option} must not be with --{other}, where it has no effect; leave one out"
-            )
 
 
 def watch(server: Server, run: Run, obey: Callable[[], object], inspect: bool) -> None:

@@ -101,8 +101,8 @@ REFUSED: list[tuple[list[object], int, str]] = [
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
     (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second is for the window"),
     (["--film", "a.webp", "--record", "a.webp"], 2, "two outputs must be two files"),
-    (["-o", "a.png", "--every", 3], 2, "--every is for a film; add --film FILE, or leave it out"),
-    (["--once"], 2, "--once is for a film; add --film FILE, or leave it out"),
+    (["-o", "a.png", "--every", 3], 2, "--every must not be given without --film, where it has no effect"),
+    (["--once"], 2, "--once must not be given without --film, where it has no effect"),
 ]
 
 

@@ -137,13 +137,13 @@ def test_the_differences_of_replies_and_entries_are_printed_from_the_first_on() 
         "sizes": "differ",
     }
     assert list(lines_of(where)) == [
-        "reply: 22 and 2 words; from word 2 on 0 1 2 3 4 5 6 7 ... and nothing",
+        "reply: 22 and 2 words, which differ from word 2 on",
         'status: "READY" and "ILLEGAL|READY"',
         "entries: 2 differ; the first is 7: [1, 2, 3] and [0, 0, 0]",
         "sizes: they differ",
     ]
-    assert list(lines_of({"reply": [[*range(8)], [9]]})) == [
-        "reply: 8 and 1 words; from word 0 on 0 1 2 3 4 5 6 7 and 9"
+    assert list(lines_of({"reply": [[*range(8)], [0, 9]]})) == [
+        "reply: 8 and 2 words, which differ from word 1 on"
     ]
 
 
