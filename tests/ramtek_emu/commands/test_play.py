@@ -99,7 +99,7 @@ REFUSED: list[tuple[list[object], int, str]] = [
     (["--film", "frames.webp"], 73, "which exists"),
     (["--film", "a.webp", "--fps", 101], 2, "101.0 is not in the range 0.1<=x<=100"),
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
-    (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second is for the window"),
+    (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second must not be given with an output"),
     (["--film", "a.webp", "--record", "a.webp"], 2, "two outputs must be two files"),
     (["-o", "a.png", "--every", 3], 2, "--every must not be given without --film, where it has no effect"),
     (["--once"], 2, "--once must not be given without --film, where it has no effect"),
