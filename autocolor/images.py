@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from io import BytesIO
 from itertools import product
 from os import PathLike
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -27,6 +28,9 @@ from autocolor.rendering import SIZE, checked_size, render
 from autocolor.scene.scene import NORMALS, Scene, check_scene
 from autocolor.sending import configuration_of, send_image, shown_colors
 from ramtek_emu import HostPort
+
+if TYPE_CHECKING:
+    from PIL.PngImagePlugin import PngInfo
 
 
 def display_image(
@@ -147,7 +151,7 @@ def save_words(
 
     The file has the lines and elements of the picture: words cannot be averaged, so a smooth picture has
     `smooth` times the lines and elements of its image. The legend of a scalar is left out. The pixels are
-    16-bit grays, equal to the words, 0 to 1023; `word_png_bytes` says where the 1024 entries are in the file.
+    16-bit grays, equal to the words, 0 to 1023; `entry_chunks` says where the 1024 entries are in the file.
 
     If `indexed`, the pixels are indices of a palette instead. The words in use are numbered from 0, in their
     order, and their entries are the palette. The colors equal `image` with `smooth=1`.
@@ -156,7 +160,7 @@ def save_words(
     use; InputError if an intensity is not finite, or if the surfaces of the picture are not those of the
     scene; OutputError and WriteError as `save_image`.
     """
-    from ramtek_emu.png import indexed_png_bytes, word_png_bytes
+    from PIL import Image
 
     check_surfaces(scene, picture)
     check_suffix(path, ".png", "words")
@@ -171,10 +175,37 @@ def save_words(
                 f" of each surface to {levels}{fewer}, or write the words themselves"
             )
         index_of_word = (np.cumsum(is_used) - 1).astype(np.uint8)
-        data = indexed_png_bytes(index_of_word[shown_image.words], shown_image.entries[is_used])
+        file, info = Image.fromarray(index_of_word[shown_image.words]), None
+        file.putpalette(shown_image.entries[is_used].tobytes())
     else:
-        data = word_png_bytes(shown_image.words, shown_image.entries)
-    write_atomically(path, data, overwrite=overwrite)
+        file, info = Image.fromarray(shown_image.words), entry_chunks(shown_image.entries)
+    buffer = BytesIO()
+    file.save(buffer, "PNG", pnginfo=info)
+    write_atomically(path, buffer.getvalue(), overwrite=overwrite)
+
+
+TABLE: Final = "lookup table"
+"""The name of the suggested palette, and the keyword of the text, with the entries of a PNG file of words."""
+
+
+def entry_chunks(entries: Bytes) -> PngInfo:
+    """The chunks of a PNG file of words with all entries, (n, 3) uint8.
+
+    The entries are in the file twice, in the order of their words: as a suggested palette, the chunk `sPLT`,
+    which libpng and Java read; and as a text of six hexadecimal digits an entry, the chunk `zTXt`, because
+    Pillow skips suggested palettes. Both are named `TABLE`.
+
+    Assumed: a suggested palette must be sorted by falling frequency. All frequencies are 0 here, so the order
+    of the words is allowed.
+    """
+    from PIL.PngImagePlugin import PngInfo
+
+    rows = np.zeros(len(entries), [("color", "u1", 3), ("alpha", "u1"), ("frequency", ">u2")])
+    rows["color"], rows["alpha"] = entries, 255
+    info = PngInfo()
+    info.add(b"sPLT", TABLE.encode("ascii") + b"\0\x08" + rows.tobytes())
+    info.add_text(TABLE, entries.tobytes().hex(), zip=True)
+    return info
 
 
 SMOOTHNESSES: Final = (1, 2, 3, 4)

@@ -117,7 +117,7 @@ class Bench:
 
 def at(place: tuple[int, int], action: str = "move", button: int = 0) -> Pointer:
     """What the mouse does at a place."""
-    return Pointer(*place, False, action, button)
+    return Pointer(*place, action, button)
 
 
 class Case(NamedTuple):

@@ -67,7 +67,7 @@ class Session:
 
     def scan_out(self) -> None:
         """Bring the field up to date, as a window does."""
-        self.held = self.display.scan_out.scan_out_changes_into(self.field, self.held)
+        self.held, _ = self.display.scan_out.scan_out_changes_into(self.field, self.held)
 
     def frame(self) -> None:
         """Move the eye."""

@@ -70,6 +70,13 @@ OPEN(open, "openat", AT_FDCWD,)
 OPEN(open64, "openat64", AT_FDCWD,)
 OPEN(openat, "openat", folder, FOLDER)
 OPEN(openat64, "openat64", folder, FOLDER)
+int creat(const char *path, mode_t mode) { return open(path, O_CREAT | O_WRONLY | O_TRUNC, mode); }
+int creat64(const char *path, mode_t mode) { return open64(path, O_CREAT | O_WRONLY | O_TRUNC, mode); }
+/* A program that was compiled with _FORTIFY_SOURCE calls these, and __read_chk below. */
+int __open_2(const char *path, int flags) { return open(path, flags); }
+int __open64_2(const char *path, int flags) { return open64(path, flags); }
+int __openat_2(int folder, const char *path, int flags) { return openat(folder, path, flags); }
+int __openat64_2(int folder, const char *path, int flags) { return openat64(folder, path, flags); }
 
 ssize_t write(int file, const void *data, size_t count)
 {
@@ -100,4 +107,9 @@ ssize_t read(int file, void *data, size_t count)
         done += part;
     }
     return (ssize_t) done;
+}
+
+ssize_t __read_chk(int file, void *data, size_t count, size_t room)
+{
+    return read(file, data, count < room ? count : room);
 }

@@ -69,41 +69,18 @@ if TYPE_CHECKING:
     from ramtek_emu.snapshot import write_snapshot as write_snapshot
     from ramtek_emu.timing import Timing as Timing
 
-_HOME: Final = {
-    "ColorsError": "errors",
-    "Configuration": "configuration",
-    "ConfigurationError": "errors",
-    "EntryFormat": "configuration",
-    "FAMILY": "configuration",
-    "GMR_9300": "configuration",
-    "HostPort": "host.port",
-    "InstructionError": "errors",
-    "JPL_9460": "configuration",
-    "Joystick": "memory.cursors",
-    "ListingError": "errors",
-    "MissingInputError": "errors",
-    "NCAR_9460": "configuration",
-    "NoScreenError": "errors",
-    "OutputError": "errors",
-    "OutputExistsError": "errors",
-    "PRINCETON_9300": "configuration",
-    "PortError": "errors",
-    "Ramtek9300": "display",
-    "RamtekError": "errors",
-    "Recorder": "host.port",
-    "ReplyError": "errors",
-    "SnapshotError": "errors",
-    "TcpPort": "host.port",
-    "Timing": "timing",
-    "UnixPort": "host.port",
-    "WordsError": "errors",
-    "WriteError": "errors",
-    "read_snapshot": "snapshot",
-    "write_snapshot": "snapshot",
+_NAMES: Final = {
+    "configuration": "Configuration EntryFormat FAMILY GMR_9300 JPL_9460 NCAR_9460 PRINCETON_9300",
+    "display": "Ramtek9300",
+    "errors": "ColorsError ConfigurationError InstructionError ListingError MissingInputError NoScreenError "
+    "OutputError OutputExistsError PortError RamtekError ReplyError SnapshotError WordsError WriteError",
+    "host.port": "HostPort Recorder TcpPort UnixPort",
+    "memory.cursors": "Joystick",
+    "snapshot": "read_snapshot write_snapshot",
+    "timing": "Timing",
 }
-
-_MODULES: Final = ("instructions",)
-"""Modules that are used whole: `ramtek_emu.instructions.write_text(...)`."""
+"""The public names of each module."""
+_HOME: Final = {name: module for module, names in _NAMES.items() for name in names.split()}
 
 __all__ = list(_HOME)
 
@@ -122,7 +99,8 @@ def __getattr__(name: str) -> object:
             return "0+unknown"
     from importlib import import_module
 
-    if name in _MODULES:
+    if name == "instructions":
+        # A module that is used whole: `ramtek_emu.instructions.write_text(...)`.
         return import_module(f"{__name__}.{name}")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

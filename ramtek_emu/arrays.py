@@ -12,9 +12,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 Words = NDArray[np.uint16]
 """16-bit words: a stream, or a picture as (lines, elements)."""
 Dots = NDArray[np.bool_]
-"""A truth value for each pixel of a raster, or for each dot of a character or a cursor."""
-Booleans = NDArray[np.bool_]
-"""One truth value for each row of a table."""
+"""Truth values: of the pixels of a raster, of the dots of a character or a cursor, of the rows of a table."""
 Numbers = NDArray[np.int64]
 """Signed numbers: coordinates and distances."""
 Indices = NDArray[np.intp]

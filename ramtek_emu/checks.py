@@ -112,6 +112,10 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> Colors:
         raise ColorsError(
             f"colors must be an (n, 3) array of red, green, blue, not of shape {array.shape}; reshape it"
         )
+    if len(array) > entries:
+        raise ColorsError(
+            f"colors must be at most {entries}, as the table's entries, not {len(array)}; send fewer"
+        )
     thing = f"the first of {len(array)} entries"
     first = checked_number(first, thing, 0, entries - len(array), "choose entries of the table", ColorsError)
     if array.dtype == np.uint8:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import difflib
 import errno
 import os
-import re
 import select
 import signal
 import sys
@@ -34,39 +33,17 @@ ENDING: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
 """The signals that end a program from outside. Windows has no SIGHUP."""
-LONG_WORD: Final = re.compile(r"(\S{38})\S{5,}(\S{38})")
-"""A word of more than 80 letters in a message of click: its beginning and its end."""
 SECONDS_BETWEEN: Final = 0.02
 """Limit: of two looks at whether Ended was dropped."""
 READER_LEFT: Final = 141
 """The exit code in a shell of a program that SIGPIPE ended."""
-WINDOW: Final = "ramtek_emu.monitor.window"
-"""The module that imports pygame."""
 PYGAME: Final = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
 """The package that provides pygame, as in pyproject.toml: pygame has no wheels from Python 3.14 on."""
 
 
-def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
-    if not asked or context.resilient_parsing:
-        return
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        click.echo(version("autocolor"))
-    except PackageNotFoundError:
-        click.echo("not installed: a checkout, run in its folder")
-    context.exit()
-
-
-version_option = click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_show_version,
-    help="Show the version and leave.",
+version_option = click.version_option(
+    package_name="autocolor", message="%(version)s", help="Show the version and leave."
 )
-"""`--version`; it also works in a checkout that was never installed."""
 
 
 class CommandGroup(click.Group):
@@ -96,17 +73,9 @@ class CommandGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the arguments name; the error for an unknown name suggests the nearest command.
-
-        If the name is a file, the error shows where the command belongs.
-        """
+        """The command that the arguments name; the error for an unknown name suggests the nearest command."""
         if args and args[0] not in self.table and not args[0].startswith("-"):
             near = difflib.get_close_matches(args[0], self.table, n=1)
-            if not near and os.path.lexists(args[0]):
-                ctx.fail(
-                    f"a command must stand before a file, as in `{ctx.info_name} {next(iter(self.table))}"
-                    f" {args[0]}`; known are {', '.join(self.table)}"
-                )
             advice = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(self.table)}"
             ctx.fail(f"there is no command {args[0]!r}; {advice}")
         return super().resolve_command(ctx, args)
@@ -198,9 +167,9 @@ def run_command(command: click.Command, name: str) -> None:
 
     SIGINT, SIGTERM and SIGHUP raise Ended, once; the exit code is 128 plus the number of the signal. If an
     error has an attribute `exit_code`, the user can act on it: its message is shown, and the attribute is the
-    code. If the reader of stdout leaves, the command ends in silence. An error while the module of the window
-    is loaded means that pygame is missing or broken. All other errors are faults of the program. With
-    `--debug` anywhere before a `--`, the traceback is shown.
+    code. If the reader of stdout leaves, the command ends in silence. If pygame cannot be imported, the
+    message has the package to install. All other errors are faults of the program. With `--debug` anywhere
+    before a `--`, the traceback is shown.
     """
     SIGNALS.install()
     try:
@@ -236,7 +205,7 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
     except click.exceptions.Abort:
         raise KeyboardInterrupt from None
     except click.ClickException as refusal:
-        refusal.message = escaped(LONG_WORD.sub(r"\1...\2", refusal.message))  # type: ignore[misc]
+        refusal.message = escaped(refusal.message)  # type: ignore[misc]
         with suppress(OSError, ValueError):
             refusal.show()
         return refusal.exit_code, ""
@@ -260,10 +229,9 @@ def _outcome(command: click.Command, name: str) -> tuple[int, str]:
         refused: int | None = getattr(error, "exit_code", None)
         if refused is not None:
             return refused, str(error)
-        if _is_of_the_window(error):
-            reason = str(error) or type(error).__name__
+        if isinstance(error, ImportError) and str(error.name).startswith("pygame"):
             return UNAVAILABLE, (
-                f"a window must have pygame, and it cannot be loaded ({reason}); "
+                f"a window must have pygame, and it cannot be loaded ({error}); "
                 f"install it with `pip install {PYGAME}`, or ask for a picture file instead"
             )
         if isinstance(error, OSError) and error.filename is None:
@@ -290,22 +258,11 @@ def _exit_code(command: click.Command, name: str, arguments: list[str]) -> objec
 
 def _memory_error(error: BaseException | None) -> BaseException | None:
     """The lack of memory that an error reports, or that led to it; None for any other error."""
-    while error is not None:
-        # Errors of pygame and of the loader of libraries have no other sign.
-        may_lack = isinstance(error, (RuntimeError, ImportError)) and not hasattr(error, "exit_code")
-        is_lack = may_lack and re.search("out of memory|cannot allocate memory", str(error), re.IGNORECASE)
-        if isinstance(error, MemoryError) or is_lack or getattr(error, "errno", None) == errno.ENOMEM:
-            return error
+    while error is not None and not isinstance(error, MemoryError):
+        if getattr(error, "errno", None) == errno.ENOMEM:
+            break
         error = error.__context__
-    return None
-
-
-def _is_of_the_window(error: Exception) -> bool:
-    """Whether the error was raised while the module of the window was loaded."""
-    return any(
-        frame.f_code.co_name == "<module>" and frame.f_globals.get("__name__") == WINDOW
-        for frame, _ in traceback.walk_tb(error.__traceback__)
-    )
+    return error
 
 
 def _without_debug(arguments: list[str]) -> tuple[bool, list[str]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass, replace
 from enum import Enum
 from operator import index
@@ -24,7 +23,7 @@ class EntryFormat(Enum):
 KINDS: Final = {
     "name": str, "entry_format": EntryFormat, "extended": bool, "monochrome": bool, "timing": Timing | None,
 }  # fmt: skip
-"""The types of the fields of a configuration that are no whole numbers."""
+"""The types of the fields that hold no whole number."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,10 +153,7 @@ def checked_configuration(name: Configuration | str) -> Configuration:
     asked = str(name).upper().replace("-", "_")
     display = asked.removesuffix("_MONOCHROME")
     if display not in CONFIGURATIONS:
-        near = difflib.get_close_matches(display, CONFIGURATIONS, n=1, cutoff=0.5)
-        advice = f"did you mean {near[0]}?" if near else "choose one of them"
-        raise ConfigurationError(
-            f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
-        )
+        names = ", ".join(sorted(CONFIGURATIONS))
+        raise ConfigurationError(f"a configuration must be one of {names}, not {name!r}; choose one of them")
     configuration = CONFIGURATIONS[display]
     return configuration if display == asked else replace(configuration, monochrome=True)

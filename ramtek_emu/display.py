@@ -12,8 +12,9 @@ from typing import Any, Final
 import numpy as np
 
 from ramtek_emu.arrays import Colors, Words
-from ramtek_emu.checks import checked_stream
+from ramtek_emu.checks import checked_number, checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration, checked_configuration
+from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, ILLEGAL
@@ -55,7 +56,7 @@ class Ramtek9300:
             self.frame_buffer,
             self.lookup_table,
             self.cursors,
-            self.processor.current_parameters,
+            self.processor.parameters,
             self.beam,
         )
 
@@ -74,13 +75,15 @@ class Ramtek9300:
             part.restore(state[name])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        beside = self.resets, self.words_received, self.decoder, self.processor.replies
+        processor = self.processor
+        beside = self.resets, self.words_received, self.decoder, processor.replies, processor.foreign
         return type(self), (self.configuration,), (self.state(), beside)
 
     def __setstate__(self, saved: tuple[Any, ...]) -> None:
         state, beside = saved
         self.restore(state)
-        self.resets, self.words_received, self.decoder, self.processor.replies = beside
+        self.resets, self.words_received, self.decoder, replies, foreign = beside
+        self.processor.replies, self.processor.foreign = replies, foreign
 
     def _parts(self) -> dict[str, Any]:
         """The parts that have a state; the beam paints the monitor image, so it comes first."""
@@ -149,14 +152,20 @@ class Ramtek9300:
         """
         self.resets += 1
         self.decoder.clear()
-        self.processor.clear_replies()
-        self.cursors.hide()
+        self.processor.replies.clear()
+        for cursor in self.cursors.all:
+            cursor.state = 0
         for _ in self._take(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16)):
             pass
 
     def receive(self, count: int) -> Words:
         """The next `count` words of the replies, uint16; ReplyError if fewer are waiting."""
-        return self.processor.take_reply(count)
+        advice = "send an instruction that reads them first"
+        count = checked_number(count, "the words received", 0, self.processor.waiting, advice, ReplyError)
+        replies = self.processor.replies
+        words = np.frombuffer(bytes(replies[: 2 * count]), np.uint16).copy()
+        del replies[: 2 * count]
+        return words
 
     def field(self) -> Colors:
         """The field that the monitor shows, (lines, elements, 3) uint8."""

@@ -18,12 +18,13 @@ def escaped(text: str) -> str:
 
 
 class RamtekError(Exception):
-    """The base of all errors of this package; a command ends with the `exit_code` of its error.
+    """The base of all errors of this package: without a code of its own, an error is about bad input.
 
     The message is one line; what cannot be printed in it is escaped.
     """
 
-    exit_code = 70
+    exit_code = 65
+    """The exit code of a command that ends with this error."""
 
     def __init__(self, message: str = "") -> None:
         super().__init__(escaped(message))
@@ -38,25 +39,17 @@ class ConfigurationError(RamtekError, ValueError):
 class WordsError(RamtekError, ValueError):
     """Words of a wrong type, range or shape."""
 
-    exit_code = 65
-
 
 class ColorsError(RamtekError, ValueError):
     """Colors of a wrong type, range or shape, or more than the lookup table takes."""
-
-    exit_code = 65
 
 
 class InstructionError(RamtekError, ValueError):
     """An instruction that cannot be encoded."""
 
-    exit_code = 65
-
 
 class ReplyError(RamtekError, LookupError):
     """A host asked for more words of replies than are waiting."""
-
-    exit_code = 65
 
 
 class NoScreenError(RamtekError, RuntimeError):
@@ -74,13 +67,9 @@ class MissingInputError(RamtekError, OSError):
 class ListingError(RamtekError, ValueError):
     """A line of a listing that cannot be assembled."""
 
-    exit_code = 65
-
 
 class SnapshotError(RamtekError, ValueError):
     """A file that is not a valid snapshot."""
-
-    exit_code = 65
 
 
 class PortError(RamtekError, ConnectionError):
@@ -97,8 +86,6 @@ class OutputError(RamtekError, OSError):
 
 class OutputExistsError(OutputError, FileExistsError):
     """A file that would be overwritten."""
-
-    exit_code = 73
 
 
 class WriteError(RamtekError, OSError):

@@ -1,41 +1,30 @@
-"""Films of fields, written whole or not at all.
+"""Films of fields, lossless and written whole or not at all: animated WebP, or a numbered PNG for each field.
 
-| suffix | format | colors |
-|---|---|---|
-| .webp | animated WebP | lossless |
-| .apng | animated PNG | lossless |
-| {number:04}.png | a numbered PNG for each field | lossless |
+A field of a WebP after the first is stored as the rectangle that differs from the field before. Pillow
+encodes the rectangles; the film is put together here, because Pillow keeps all fields in memory until the
+end. The number of fields need not be known before the last. `TimedFilm` takes fields with the times at which
+they were shown.
 
-A field after the first is stored as the rectangle that differs from the field before. Pillow encodes the
-fields; the films are put together here, because Pillow keeps all fields in memory until the end. The number
-of fields need not be known before the last. `TimedFilm` takes fields with the times at which they were shown.
-
-Measured for 640 x 480 fields of the coupe, a turn and a fade of its paint: WebP takes 9 ms and 30 to 51 KB a
-field, an animated PNG 10 ms and 61 to 72 KB.
-Measured and rejected: slower methods of WebP, which save a fifth to a quarter of the bytes for three to seven
-times the time; WebP whose every field is encoded by itself, which are twice as large.
+docs/PERFORMANCE.md says how large films are, and which other encoders were measured and rejected.
 """
 
 from __future__ import annotations
 
 import math
-import os
-import re
 from collections.abc import Callable, Iterable, Iterator
 from io import BytesIO
-from itertools import islice
 from os import PathLike, fspath
 from pathlib import Path
-from struct import pack, unpack_from
-from typing import Final, NamedTuple
+from struct import pack
+from typing import Final
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageChops
 
 from ramtek_emu.arrays import Colors
 from ramtek_emu.errors import ColorsError, OutputError
-from ramtek_emu.png import SIGNATURE, chunk, chunks, png_bytes
-from ramtek_emu.writing import Output, refusal, refuse_output, write_atomically
+from ramtek_emu.png import png_bytes
+from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 LEAST_RATE: Final = 0.1
 MOST_RATE: Final = 100.0
@@ -43,12 +32,6 @@ MOST_RATE: Final = 100.0
 
 MOST_FIELDS: Final = 100_000
 """Limit: fields of a film."""
-
-LARGEST_WEBP: Final = 16383
-"""The most elements and lines of a WebP."""
-
-NUMBER: Final = re.compile(r"\{number(?::0?([0-9]{1,2}))?\}")
-"""The number of a picture in a pattern of names, with its number of digits."""
 
 
 def write_film(
@@ -59,34 +42,34 @@ def write_film(
     loop: bool = True,
     overwrite: bool = False,
 ) -> None:
-    """Write (lines, elements, 3) uint8 fields to a film in the format of its suffix.
+    """Write (lines, elements, 3) uint8 fields to a film, whose name ends in .webp.
 
-    `fields` are taken one by one. With `loop`, the film begins again at its end. A WebP stores equal
-    consecutive fields once, with a longer duration. `path` may be a pattern of numbered pictures, such as
-    "frame-{number:04}.png"; they have no rate.
+    `fields` are taken one by one. With `loop`, the film begins again at its end. `path` may be a pattern of
+    numbered pictures, such as "frame-{number:04}.png"; they have no rate.
+
     Raises ColorsError for fields of different sizes, for none or too many, and for a wrong rate. Raises
     OutputError, OutputExistsError or WriteError if the film cannot be written. Then there is no file, but
     numbered pictures that were finished stay.
     """
     check_film(path, fields_per_second, overwrite)
-    suffix = Path(path).suffix.lower()
-    if suffix == PICTURES:
+    if Path(path).suffix.lower() == PICTURES:
         for number, field in enumerate(_alike(fields), 1):
-            write_atomically(
-                numbered(fspath(path), number), png_bytes(field), overwrite=overwrite, sync=False
-            )
+            write_atomically(numbered(path, number), png_bytes(field), overwrite=overwrite, sync=False)
         return
     with Output(path, overwrite=overwrite) as output:
-        FORMATS[suffix](output, _alike(fields), fields_per_second, loop)
+        film = AnimatedWebp(output.write, loop)
+        for number, field in enumerate(_alike(fields)):
+            film.add(field, milliseconds_of(number, fields_per_second))
+        output.write_at(AnimatedWebp.LENGTH_PLACE, film.length())
         output.keep()
 
 
 def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: bool = False) -> None:
     """Raise the error of `write_film` for a path that it cannot write, or for a rate of no film."""
     suffix = Path(path).suffix.lower()
-    if suffix not in (*FORMATS, PICTURES):
+    if suffix not in (FILM, PICTURES):
         raise OutputError(
-            f"a film must end in {', '.join(FORMATS)}, or in .png with a number, not in {suffix!r}; rename it"
+            f"a film must end in {FILM}, or in {PICTURES} with a number, not in {suffix!r}; rename it"
         )
     if not LEAST_RATE <= fields_per_second <= MOST_RATE:
         raise ColorsError(
@@ -101,50 +84,29 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
 
 def _check_pattern(pattern: Path, overwrite: bool) -> None:
     """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
-    numbers = list(NUMBER.finditer(pattern.name))
-    if len(numbers) != 1 or any(brace in f"{pattern.parent}{NUMBER.sub('', pattern.name)}" for brace in "{}"):
-        raise OutputError(
-            f"numbered pictures must have one number in their name, as in frame-{{number:04}}.png, not"
-            f" {fspath(pattern)!r}; or end the name in .apng for an animated PNG"
-        )
-    refuse_output(numbered(fspath(pattern), 1), overwrite)
     try:
-        others = [] if overwrite else sorted(os.listdir(pattern.parent))
-    except OSError as error:
-        raise refusal(pattern.parent, error) from None
-    for other in filter(_picture_names(pattern).fullmatch, others):
-        refuse_output(pattern.parent / other, overwrite)
+        first, second = (numbered(pattern, number) for number in (1, 2))
+    except (LookupError, ValueError, TypeError, AttributeError):
+        first = second = ""
+    if first == second:
+        raise OutputError(
+            "numbered pictures must have a number in their name, as in frame-{number:04}.png, not"
+            f" {fspath(pattern)!r}; or end the name in .webp for a film"
+        )
+    refuse_output(first, overwrite)
 
 
-def _picture_names(pattern: Path) -> re.Pattern[str]:
-    """The names of the pictures of a pattern with a number."""
-    before, _, after = NUMBER.split(pattern.name)
-    return re.compile(f"{re.escape(before)}[0-9]+{re.escape(after)}")
-
-
-def is_numbered(path: str | PathLike[str], film: str | PathLike[str]) -> bool:
-    """Whether a path may be one of the pictures of a film of numbered pictures.
-
-    >>> is_numbered("frame-0007.png", "frame-{number:04}.png"), is_numbered("7.webp", "8.webp")
-    (True, False)
-    """
-    path, film = Path(path), Path(film)
-    if film.suffix.lower() != PICTURES or not _picture_names(film).fullmatch(path.name):
-        return False
-    return os.path.realpath(path.parent) == os.path.realpath(film.parent)
-
-
-def numbered(pattern: str, number: int) -> str:
+def numbered(pattern: str | PathLike[str], number: int) -> str:
     """The path of a numbered picture.
 
     >>> numbered("frame-{number:04}.png", 7)
     'frame-0007.png'
     """
-    return NUMBER.sub(lambda match: f"{number:0{int(match[1] or 1)}}", pattern)
+    return fspath(pattern).format(number=number)
 
 
 def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
-    """The fields, contiguous. Raises ColorsError for none, too many, or fields of different sizes."""
+    """The fields. Raises ColorsError for none, too many, or fields of different sizes."""
     size: tuple[int, ...] | None = None
     for number, field in enumerate(fields, 1):
         size = size or field.shape
@@ -155,7 +117,7 @@ def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
             )
         if number > MOST_FIELDS:
             raise ColorsError(f"a film must have at most {MOST_FIELDS:,} fields, not more; choose fewer")
-        yield np.ascontiguousarray(field)
+        yield field
     if size is None:
         raise ColorsError("a film must have at least one field, not none; make a field")
 
@@ -170,204 +132,90 @@ def milliseconds_of(number: int, fields_per_second: float) -> int:
     return end - start
 
 
-class Rectangle(NamedTuple):
-    """The elements and lines of a rectangle."""
-
-    left: int
-    top: int
-    elements: int
-    lines: int
-
-    def of(self, field: Colors) -> Colors:
-        """The colors of a field in the rectangle."""
-        lines = slice(self.top, self.top + self.lines)
-        return field[lines, self.left : self.left + self.elements]
-
-
-def differing_area(field: Colors, before: Colors | None) -> Rectangle:
-    """The smallest rectangle of pixels that differ from the field before; one pixel if no pixel differs."""
-    if before is None:
-        return Rectangle(0, 0, field.shape[1], field.shape[0])
-    # Measured: to reduce the components first, (field != before).any(axis=2), takes forty times as long.
-    differs = (field != before).reshape(len(field), -1)
-    lines = np.flatnonzero(differs.any(axis=1))
-    elements = np.flatnonzero(differs.any(axis=0).reshape(-1, 3).any(axis=1))
-    if not len(lines):
-        return Rectangle(0, 0, 1, 1)
-    left, top = int(elements[0]), int(lines[0])
-    return Rectangle(left, top, int(elements[-1]) - left + 1, int(lines[-1]) - top + 1)
-
-
 # Animated WebP, by its specification, RFC 9649: a header, and a chunk ANMF for each field.
 
-WEBP_GROUP: Final = 17
-"""Fields that are encoded together: after so many, libwebp begins with a whole field again."""
+FILM: Final = ".webp"
+PICTURES: Final = ".png"
+"""The suffixes of a film and of numbered pictures."""
 
-WEBP_GROUP_PIXELS: Final = 1 << 24
-"""Limit: pixels of the fields that are encoded together, unless a field alone has more. They take 50 MB, and
-their data no more."""
+LARGEST_WEBP: Final = 16383
+"""The most elements and lines of a WebP."""
 
 LARGEST_RIFF: Final = (1 << 32) - 10
 """Limit: bytes of a WebP after its first eight."""
 
-
-def _write_webp(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> None:
-    timed = _differing(fields, rate)
-    group = [next(timed)]
-    lines, elements, _ = group[0].field.shape
-    if max(lines, elements) > LARGEST_WEBP:
-        raise OutputError(
-            f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(lines, elements)};"
-            " write .apng"
-        )
-    size = pack("<I", elements - 1)[:3] + pack("<I", lines - 1)[:3]
-    header = _riff_chunk(b"VP8X", bytes(4) + size) + _riff_chunk(b"ANIM", pack("<IH", 0, 0 if loop else 1))
-    output.write(b"RIFF\0\0\0\0WEBP" + header)
-    written, flags = 4 + len(header), ANIMATED
-    most = max(1, min(WEBP_GROUP, WEBP_GROUP_PIXELS // (lines * elements)))
-    while group:
-        group += islice(timed, most - len(group))
-        data, has_alpha = _webp_fields(group, size)
-        flags |= has_alpha
-        written += len(data)
-        if written > LARGEST_RIFF:
-            raise OutputError(
-                "a WebP must have at most 4 GB, not more; write .apng, or fewer or smaller fields"
-            )
-        output.write(data)
-        group = list(islice(timed, 1))
-    output.write_at(4, pack("<I", written))
-    output.write_at(20, bytes([flags]))
-
+LONGEST: Final = (1 << 24) - 1
+"""Limit: milliseconds of a field, four and a half hours."""
 
 ANIMATED: Final = 0x02
-HAS_ALPHA: Final = 0x10
-"""The flags in VP8X of an animation, and of fields with transparent pixels, which show the field before."""
+"""The flag of an animation in VP8X."""
 
 
-class _TimedField(NamedTuple):
-    """A field with its duration in milliseconds."""
+class AnimatedWebp:
+    """An animated WebP that is made field by field; `write` gets its bytes.
 
-    field: Colors
-    milliseconds: int
-
-
-def _differing(fields: Iterator[Colors], rate: float) -> Iterator[_TimedField]:
-    """The fields that differ from the field before, each with the time of its repeats."""
-    shown: Colors | None = None
-    duration = 0
-    for number, field in enumerate(fields):
-        if shown is not None and not np.array_equal(field, shown):
-            yield _TimedField(shown, duration)
-            duration = 0
-        shown = field
-        duration += milliseconds_of(number, rate)
-    if shown is not None:
-        yield _TimedField(shown, duration)
-
-
-def _webp_fields(group: list[_TimedField], size: bytes) -> tuple[bytes, int]:
-    """The chunks ANMF of some fields, of which the first is stored whole; and HAS_ALPHA or 0."""
-    first, *others = (Image.fromarray(timed.field) for timed in group)
-    durations = [timed.milliseconds for timed in group]
-    buffer = BytesIO()
-    how = {"duration": durations, "lossless": True, "quality": 50, "method": 0}
-    first.save(buffer, "WEBP", save_all=True, append_images=others, **how)
-    parts = list(_riff_chunks(buffer.getvalue()))
-    if others:
-        fields = b"".join(_riff_chunk(*part) for part in parts if part[0] == b"ANMF")
-        return fields, dict(parts)[b"VP8X"][0] & HAS_ALPHA
-    # Pillow writes a still picture, whose chunk is the data of the field.
-    (part,) = parts
-    place = bytes(6) + size + pack("<I", durations[0])[:3] + bytes(1)
-    return _riff_chunk(b"ANMF", place + _riff_chunk(*part)), 0
-
-
-def _riff_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """The kinds and data of the chunks of a WebP."""
-    place = 12
-    while place < len(data):
-        kind, length = unpack_from("<4sI", data, place)
-        yield kind, data[place + 8 : place + 8 + length]
-        place += 8 + length + length % 2
-
-
-def _riff_chunk(kind: bytes, data: bytes) -> bytes:
-    return kind + pack("<I", len(data)) + data + bytes(len(data) % 2)
-
-
-# Animated PNG, by its specification: acTL counts the fields, fcTL describes a field, and fdAT holds the data
-# of a field after the first.
-
-PNG_LEVEL: Final = 3
-"""Level 6 takes twice the time for a fifth fewer bytes."""
-
-UNITS: Final = (1000, 100, 10, 1)
-"""The units of a field's duration, per second. It counts at most 65,535 of them."""
-
-
-class AnimatedPng:
-    """An animated PNG that is made field by field; `write` gets its bytes.
-
-    The number of fields stands before the fields. It is 0 until `count` is written at COUNT_PLACE.
+    The number of bytes stands before the fields. It is 0 until `length` is written at LENGTH_PLACE.
     """
 
-    COUNT_PLACE: Final = 33
+    LENGTH_PLACE: Final = 4
 
     def __init__(self, write: Callable[[bytes], object], loop: bool) -> None:
         self.fields = 0
         """The number of fields."""
         self._write = write
         self._loop = loop
-        self._before: Colors | None = None
-        self._sequence = 0
+        self._before: Image.Image | None = None
+        self._length = 0
 
     def add(self, field: Colors, milliseconds: int) -> None:
-        """Add a (lines, elements, 3) uint8 field of the size of the others, with its duration."""
-        area = differing_area(field, self._before)
-        parts = list(chunks(png_bytes(area.of(field), PNG_LEVEL)))
+        """Add a (lines, elements, 3) uint8 field of the size of the others, with its duration.
+
+        Raises OutputError if the field or the film is too large for the format.
+        """
         if self._before is None:
-            self._write(SIGNATURE + chunk(*parts[0]) + self.count())
-        shape = (area.elements, area.lines, area.left, area.top)
-        unit = next((unit for unit in UNITS if milliseconds * unit < 65_535_500), 1)
-        duration = min(65_535, milliseconds * unit // 1000)
-        # Neither dispose of the field before nor blend with it: the rectangle is replaced.
-        self._add_chunk(b"fcTL", pack(">IIIIHHBB", *shape, duration, unit, 0, 0))
-        for kind, data in parts:
-            if kind == b"IDAT" and self._before is None:
-                self._write(chunk(kind, data))
-            elif kind == b"IDAT":
-                self._add_chunk(b"fdAT", data)
-        self._before = field
+            lines, elements, _ = field.shape
+            if max(lines, elements) > LARGEST_WEBP:
+                raise OutputError(
+                    f"a WebP must have at most {LARGEST_WEBP} lines and elements, not {max(lines, elements)};"
+                    " write numbered pictures"
+                )
+            sizes = _three_bytes(elements - 1, lines - 1)
+            header = b"WEBP" + _riff_chunk(b"VP8X", pack("<I", ANIMATED) + sizes)
+            header += _riff_chunk(b"ANIM", pack("<IH", 0, 0 if self._loop else 1))
+            self._write(b"RIFF\0\0\0\0" + header)
+            self._length = len(header)
+        picture, box = Image.fromarray(field), None
+        if self._before is not None:
+            # A field that equals the field before is a pixel of it.
+            box = ImageChops.difference(picture, self._before).getbbox() or (0, 0, 1, 1)
+        left, top, right, bottom = box or (0, 0, *picture.size)
+        # The format has half of the place.
+        left, top = left // 2 * 2, top // 2 * 2
+        still = BytesIO()
+        picture.crop((left, top, right, bottom)).save(still, "WEBP", lossless=True, quality=50, method=0)
+        place = left // 2, top // 2, right - left - 1, bottom - top - 1, min(milliseconds, LONGEST)
+        # A still picture is a header of 12 bytes and the chunk of its pixels.
+        data = _riff_chunk(b"ANMF", _three_bytes(*place) + bytes(1) + still.getvalue()[12:])
+        self._length += len(data)
+        if self._length > LARGEST_RIFF:
+            raise OutputError(
+                "a WebP must have at most 4 GB, not more; write fewer or smaller fields, or numbered pictures"
+            )
+        self._write(data)
+        self._before = picture
         self.fields += 1
 
-    def _add_chunk(self, kind: bytes, data: bytes) -> None:
-        """Write a chunk with its number in the sequence."""
-        self._write(chunk(kind, pack(">I", self._sequence) + data))
-        self._sequence += 1
-
-    def count(self) -> bytes:
-        """The chunk that counts the fields; it belongs at COUNT_PLACE."""
-        return chunk(b"acTL", pack(">II", self.fields, 0 if self._loop else 1))
-
-    def end(self) -> None:
-        """Write the end of the file; the count must still be written."""
-        self._write(chunk(b"IEND", b""))
+    def length(self) -> bytes:
+        """The number of the bytes that follow it; it belongs at LENGTH_PLACE."""
+        return pack("<I", self._length)
 
 
-def _write_apng(output: Output, fields: Iterator[Colors], rate: float, loop: bool) -> None:
-    film = AnimatedPng(output.write, loop)
-    for number, field in enumerate(fields):
-        film.add(field, milliseconds_of(number, rate))
-    film.end()
-    output.write_at(AnimatedPng.COUNT_PLACE, film.count())
+def _three_bytes(*numbers: int) -> bytes:
+    return b"".join(number.to_bytes(3, "little") for number in numbers)
 
 
-FORMATS: Final = {".webp": _write_webp, ".apng": _write_apng}
-"""The function that writes each format, by the suffix."""
-
-PICTURES: Final = ".png"
-"""The suffix of numbered pictures."""
+def _riff_chunk(kind: bytes, data: bytes) -> bytes:
+    return kind + pack("<I", len(data)) + data + bytes(len(data) % 2)
 
 
 # Films of fields as they are shown.
@@ -377,7 +225,7 @@ MOST_BYTES: Final = 1 << 28
 
 
 class TimedFilm:
-    """Fields with the times at which they were shown, as an animated PNG in memory.
+    """Fields with the times at which they were shown, as an animated WebP in memory.
 
     A field is encoded when the next field is shown, because its duration stands before its data. Measured: a
     field of 640 x 480 that differs everywhere takes 10 ms.
@@ -386,31 +234,25 @@ class TimedFilm:
     def __init__(self, field: Colors, seconds: float) -> None:
         """Begin with a (lines, elements, 3) uint8 field, shown since `seconds` of any clock."""
         self._file = BytesIO()
-        self._film = AnimatedPng(self._file.write, loop=True)
+        self._film = AnimatedWebp(self._file.write, loop=True)
         self._shown = field
         self._began = seconds
         self._milliseconds = 0
         """The time of the shown field, from the beginning."""
-        self._data = b""
 
     @property
     def fields(self) -> int:
         """The number of fields, with the field that is shown."""
-        return self._film.fields + (not self.has_ended)
+        return self._film.fields + 1
 
     @property
     def is_full(self) -> bool:
         """Whether a limit is reached: MOST_FIELDS or MOST_BYTES."""
-        return self.has_ended or self.fields >= MOST_FIELDS or self._file.tell() >= MOST_BYTES
-
-    @property
-    def has_ended(self) -> bool:
-        """Whether `end` was called."""
-        return bool(self._data)
+        return self.fields >= MOST_FIELDS or self._file.tell() >= MOST_BYTES
 
     def show(self, field: Colors, seconds: float) -> None:
         """Add a field that is shown from `seconds` on; a field that equals the shown field adds nothing."""
-        if not self.has_ended and not np.array_equal(field, self._shown):
+        if not np.array_equal(field, self._shown):
             self._encode_shown(seconds)
             self._shown = field
 
@@ -420,12 +262,8 @@ class TimedFilm:
         self._milliseconds = end
 
     def end(self, seconds: float) -> bytes:
-        """End the film at `seconds`, unless it has ended already; returns the bytes of its file."""
-        if not self.has_ended:
-            self._encode_shown(seconds)
-            self._film.end()
-            self._file.seek(AnimatedPng.COUNT_PLACE)
-            self._file.write(self._film.count())
-            self._data = self._file.getvalue()
-            self._file.close()
-        return self._data
+        """End the film at `seconds`; returns the bytes of its file."""
+        self._encode_shown(seconds)
+        self._file.seek(AnimatedWebp.LENGTH_PLACE)
+        self._file.write(self._film.length())
+        return self._file.getvalue()

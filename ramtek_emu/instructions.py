@@ -55,11 +55,6 @@ def initialize() -> Words:
     return encode(Instruction(FORMAT_OF_NAME["INIT"]))
 
 
-def no_operation() -> Words:
-    """NOP: do nothing."""
-    return encode(Instruction(FORMAT_OF_NAME["NOP"]))
-
-
 def set_parameters(**operands: OperandValue | None) -> Words:
     """SET: set operands by name (`foreground=3`, `window=(0, 0, 639, 479)`); they stay until set again."""
     return encode(normal("SET", operands))
@@ -163,9 +158,10 @@ def write_segments(segments: object, word: int | None = None) -> Words:
     """WVL or WR: draw lines from (n, 4) segments (element, line of the start; element, line of the end).
 
     A 9300 has an instruction for linked lines alone. So a few runs of linked segments are sent by WVL each.
-    Thousands of instructions would take long: instead, the same pixels are sent as a raster of one bit a
-    pixel, in the box around them, without elements and lines above 4095. The word stays set, and with a
-    raster the window and the scan order. WordsError if the segments are not such an array.
+    Thousands of instructions would take long: instead, the pixels of solid lines are sent as a raster of one
+    bit a pixel, in the box around them, without elements and lines above 4095. So a texture may change a few
+    lines, and never many. The word stays set, and with a raster the window and the scan order. WordsError if
+    the segments are not such an array.
     """
     words = checked_places(segments, "segments", "segment", ("element", "line", "element", "line"))
     breaks = np.flatnonzero((words[1:, :2] != words[:-1, 2:]).any(axis=1)) + 1
@@ -281,7 +277,8 @@ LOAD: Final = FORMAT_OF_NAME["LAM"].opcode << 8
 def load_entries(first: int, colors: object, entries: int = 1024, short: bool = False) -> Words:
     """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 24-bit format.
 
-    With `short=True` it is the 12-bit format, which has the upper four bits of each component.
+    With `short=True` it is the 12-bit format, which has the upper four bits of each component. `entries` is
+    the size of the table, at most 4096; ColorsError if the colors do not fit.
     """
     checked = checked_colors(first, colors, entries)
     if short:

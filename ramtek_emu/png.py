@@ -1,4 +1,4 @@
-"""Fields, and words with their entries, as PNG files; and the chunks of PNG files."""
+"""Fields as PNG files, and the chunks of PNG files."""
 
 from __future__ import annotations
 
@@ -7,17 +7,13 @@ from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from struct import pack, unpack_from
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from zlib import crc32
 
 import numpy as np
 
-from ramtek_emu.arrays import Colors, Words
+from ramtek_emu.arrays import Colors
 from ramtek_emu.writing import PNG, check_suffix, write_atomically, write_numbered
-
-if TYPE_CHECKING:
-    from PIL import Image
-    from PIL.PngImagePlugin import PngInfo
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 """The first bytes of a PNG file; chunks follow."""
@@ -46,22 +42,7 @@ def chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
 
 
 LEVEL: Final = 4
-"""The compression of a PNG file by default: from 0, fastest, to 9, smallest.
-
-Measured: eight pictures of 640 x 480 pixels (coupe, bracket, row of balls and teapot, with and without smooth
-edges), Pillow 13 with zlib-ng 2.3, processor time and bytes of one picture:
-
-| level | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7 | 8 | 9 |
-|---|---|---|---|---|---|---|---|---|---|---|
-| ms | 4.7 | 7.6 | 8.0 | 9.7 | 10.3 | 12.5 | 19.1 | 27.1 | 67.8 | 129.9 |
-| kB | 922 | 102 | 97 | 88 | 83 | 79 | 72 | 71 | 69 | 66 |
-
-Level 4 takes 54 % of the time of level 6, zlib's own default, for 15 % more bytes; level 3 takes 51 % for
-22 % more, and level 5 65 % for 9 % more.
-
-Measured and rejected: zlib's strategy of run lengths takes 41 % of the time for 25 % more bytes, and ignores
-the level. Its other strategies make larger files in the same time.
-"""
+"""The compression of a PNG file by default: from 0, fastest, to 9, smallest; see docs/PERFORMANCE.md."""
 
 
 def png_bytes(field: Colors, level: int | None = None) -> bytes:
@@ -74,46 +55,6 @@ def png_bytes(field: Colors, level: int | None = None) -> bytes:
     buffer = BytesIO()
     level = LEVEL if level is None else level
     Image.fromarray(np.ascontiguousarray(field)).save(buffer, "PNG", compress_level=level)
-    return buffer.getvalue()
-
-
-TABLE: Final = "lookup table"
-"""The name of the suggested palette, and the keyword of the text, with the entries of a PNG file of words."""
-
-
-def word_png_bytes(words: Words, entries: Colors) -> bytes:
-    """Words, (lines, elements) uint16, as a PNG file of 16-bit grays with all entries, (n, 3) uint8.
-
-    The gray of a pixel is its word. The entries are in the file twice, in the order of their words: as a
-    suggested palette, the chunk `sPLT`, which libpng and Java read; and as a text of six hexadecimal digits
-    an entry, the chunk `zTXt`, because Pillow skips suggested palettes. Both are named `TABLE`.
-
-    Assumed: a suggested palette must be sorted by falling frequency. All frequencies are 0 here, so the order
-    of the words is allowed.
-    """
-    from PIL import Image
-    from PIL.PngImagePlugin import PngInfo
-
-    rows = np.zeros(len(entries), [("color", "u1", 3), ("alpha", "u1"), ("frequency", ">u2")])
-    rows["color"], rows["alpha"] = entries, 255
-    chunks = PngInfo()
-    chunks.add(b"sPLT", TABLE.encode("ascii") + b"\0\x08" + rows.tobytes())
-    chunks.add_text(TABLE, entries.tobytes().hex(), zip=True)
-    return _saved(Image.fromarray(np.ascontiguousarray(words)), chunks)
-
-
-def indexed_png_bytes(indices: Colors, palette: Colors) -> bytes:
-    """Indices, (lines, elements) uint8, of a palette of 1 to 256 colors, (n, 3) uint8, as a PNG file."""
-    from PIL import Image
-
-    image = Image.fromarray(np.ascontiguousarray(indices))
-    image.putpalette(palette.tobytes())
-    return _saved(image)
-
-
-def _saved(image: Image.Image, chunks: PngInfo | None = None) -> bytes:
-    buffer = BytesIO()
-    image.save(buffer, "PNG", pnginfo=chunks)
     return buffer.getvalue()
 
 

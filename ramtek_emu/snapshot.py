@@ -10,9 +10,7 @@ looks dark, since only ten of sixteen bits are used. The texts are JSON. A value
 type, the length and the fields of the same value in a new display, or the error names the place.
 
 Snapshots may come from anywhere, so every size is checked before memory of that size is used: the file, the
-picture, the texts and the unpacked pixels. Pillow does not read them: it raises a dozen kinds of errors for
-such files. This module reads and writes the small part of the PNG format that snapshots need, and refuses
-the rest: other depths, interlacing, filters, unknown critical chunks.
+picture, the texts and the unpacked values.
 """
 
 from __future__ import annotations
@@ -21,10 +19,11 @@ import base64
 import binascii
 import json
 import os
-import struct
+import warnings
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import fields as fields_of
+from io import BytesIO
 from itertools import islice
 from os import PathLike
 from pathlib import Path
@@ -37,7 +36,7 @@ from ramtek_emu.configuration import Configuration, EntryFormat
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError, reason_of
 from ramtek_emu.memory.scan_orders import Point, Window
-from ramtek_emu.png import SIGNATURE, chunk, chunks
+from ramtek_emu.png import chunks
 from ramtek_emu.processor.environment_executors import MOST_SAVED
 from ramtek_emu.timing import Timing
 from ramtek_emu.writing import PNG, check_suffix, write_atomically
@@ -70,11 +69,6 @@ def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bo
     Raises OutputError for a name that does not end in .png, and if no file can be created there;
     OutputExistsError if the file exists and `overwrite` is false; WriteError if writing fails.
     """
-    if not isinstance(display, Ramtek9300):
-        raise SnapshotError(
-            f"a snapshot must be of a Ramtek9300, not of a {type(display).__name__}; "
-            "give the display first, then the path"
-        )
     check_suffix(path, PNG, "a snapshot")
     write_atomically(path, snapshot_bytes(display), overwrite=overwrite)
 
@@ -176,12 +170,15 @@ def _object(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
     return values
 
 
-WORD: Final = (-0x8000, 0xFFFF)
+WORD: Final = (0, 0xFFFF)
 COORDINATE: Final = (-0x8000, 0x7FFF)
+SCREEN: Final = (-(1 << 17), 1 << 17)
 COUNT: Final = (0, 1 << 62)
 LIMITS: Final = {
     "conic": (-(1 << 31), (1 << 32) - 1),
     "zoom": (1, 16),
+    "element": SCREEN,
+    "line": SCREEN,
     "nanoseconds": COUNT,
     "illegal_words": COUNT,
     "without_effect": COUNT,
@@ -285,86 +282,45 @@ MOST_SIDE: Final = 4096
 """Limit: the most elements, and the most lines."""
 MOST_TEXT: Final = 8 << 20
 """Limit: the most bytes of all texts together."""
-MOST_CHUNKS: Final = 1 << 16
-"""Limit: the most chunks."""
+MOST_CHUNKS: Final = 1 << 13
+"""Limit: the most chunks; pixels in chunks of 8 KB, as by libpng, take at most half of them."""
 
 
 def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
     """A PNG file of (lines, elements) words, 16 bits gray, and of ASCII texts by keyword."""
-    lines, elements = words.shape
-    # A line begins with the number of its filter; 0 means no filter.
-    rows = np.zeros((lines, 1 + 2 * elements), np.uint8)
-    rows[:, 1:] = words.astype(">u2").view(np.uint8).reshape(lines, -1)
-    parts = [SIGNATURE, chunk(b"IHDR", struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))]
-    parts += [
-        chunk(b"tEXt", keyword.encode("ascii") + b"\0" + text.encode("ascii"))
-        for keyword, text in texts.items()
-    ]
-    parts += [chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)), chunk(b"IEND", b"")]
-    return b"".join(parts)
+    from PIL import Image
+    from PIL.PngImagePlugin import PngInfo
+
+    buffer, info = BytesIO(), PngInfo()
+    for keyword, text in texts.items():
+        info.add_text(keyword, text)
+    Image.fromarray(np.ascontiguousarray(words)).save(buffer, "PNG", pnginfo=info)
+    return buffer.getvalue()
 
 
 def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
-    """The words and the texts of a PNG file of `picture_bytes`; SnapshotError if it is not valid."""
-    size: tuple[int, int] | None = None
-    texts: dict[str, str] = {}
-    packed: list[bytes] = []
-    kind, text_size = b"", 0
+    """The words and the texts of a PNG file of 16-bit grays; SnapshotError if it is not valid."""
+    from PIL import Image
+
     try:
-        for kind, content in islice(chunks(data), MOST_CHUNKS):
-            if size is None:
-                size = _size(kind, content)
-            elif kind == b"IDAT":
-                packed.append(content)
-            elif kind == b"tEXt":
-                keyword, text = _text(content)
-                if keyword in texts:
-                    raise refusal("have each text once", f"{keyword!r} twice")
-                texts[keyword] = text
-                text_size += len(text)
-                if text_size > MOST_TEXT:
-                    raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
-            elif kind == b"IEND":
-                break
-            elif not kind[0] & 0x20:
-                raise refusal("have known chunks", f"a chunk {kind.decode('latin-1')!r}")
-    except SnapshotError:
+        # Pillow checks no checksums of pixels.
+        kinds = [kind for kind, _ in islice(chunks(data), MOST_CHUNKS)]
+        if kinds[-1:] != [b"IEND"]:
+            raise refusal(f"end within {MOST_CHUNKS} chunks", "go on")
+        with (
+            warnings.catch_warnings(action="error"),
+            Image.open(BytesIO(data), formats=["PNG"]) as picture,
+        ):
+            if not picture.mode.startswith("I"):
+                raise refusal("be 16 bits gray", "another kind of picture")
+            if max(picture.size) > MOST_SIDE:
+                raise refusal(f"be 1 to {MOST_SIDE} elements and lines", "{} x {}".format(*picture.size))
+            words = np.array(picture, np.uint16)
+            texts: dict[str, str] = getattr(picture, "text", {})
+    except (SnapshotError, MemoryError):
         raise
-    except ValueError as broken:
-        raise SnapshotError(f"{broken}; take a new snapshot with --snapshot") from None
-    if kind != b"IEND" or size is None:
-        raise refusal(f"end within {MOST_CHUNKS} chunks", "go on")
-    return _words(packed, *size), texts
-
-
-def _size(kind: bytes, content: bytes) -> tuple[int, int]:
-    if kind != b"IHDR" or len(content) != 13:
-        raise refusal("begin with its size", "with another chunk")
-    elements, lines, *kind_of_pixels = struct.unpack(">IIBBBBB", content)
-    if kind_of_pixels != [16, 0, 0, 0, 0]:
-        raise refusal("be 16 bits gray, not interlaced", "another kind of picture")
-    if not (1 <= elements <= MOST_SIDE and 1 <= lines <= MOST_SIDE):
-        raise refusal(f"be 1 to {MOST_SIDE} elements and lines", f"{elements} x {lines}")
-    return lines, elements
-
-
-def _text(content: bytes) -> tuple[str, str]:
-    keyword, zero, text = content.partition(b"\0")
-    if not zero or not 1 <= len(keyword) <= 79 or not content.isascii():
-        raise refusal("have texts with a keyword, in ASCII", "other texts")
-    return keyword.decode("ascii"), text.decode("ascii")
-
-
-def _words(packed: list[bytes], lines: int, elements: int) -> Words:
-    expected = lines * (1 + 2 * elements)
-    unpacker = zlib.decompressobj()
-    try:
-        unpacked = unpacker.decompress(b"".join(packed), expected + 1)
-    except zlib.error as cause:
-        raise refusal("have pixels that can be unpacked", f"broken pixels ({cause})") from None
-    if len(unpacked) != expected or not unpacker.eof:
-        raise refusal(f"have {lines} lines of {elements} words", "more or fewer")
-    rows = np.frombuffer(unpacked, np.uint8).reshape(lines, -1)
-    if rows[:, 0].any():
-        raise refusal("have unfiltered lines, as they were written", "lines that another program filtered")
-    return np.ascontiguousarray(rows[:, 1:]).view(">u2").astype(np.uint16)
+    except Exception as broken:
+        raise refusal("be a whole PNG file", f"a broken or another file ({reason_of(broken)})") from None
+    if sum(map(len, texts.values())) > MOST_TEXT:
+        raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
+    return words, texts

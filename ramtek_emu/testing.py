@@ -1,4 +1,4 @@
-"""Strategies and a check for property tests of programs that use the display, with hypothesis.
+"""Strategies for property tests of programs that use the display, with hypothesis.
 
 They need hypothesis, which the extra `testing` installs. docs/TESTING.md has complete tests.
 """
@@ -6,7 +6,6 @@ They need hypothesis, which the extra `testing` installs. docs/TESTING.md has co
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ramtek_emu.arrays import Colors, Raster
 from ramtek_emu.instruction_set.table import FORMATS, SUBSTANTIATED
@@ -48,30 +47,3 @@ def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
     begins = st.builds(lambda opcode, low: opcode << 8 | low, opcodes, st.integers(0, 255))
     small = st.integers(0, 12)
     return st.lists(begins | small | words(16), max_size=most)
-
-
-def check_words_within_planes(words: ArrayLike, planes: int = 10) -> None:
-    """Raise AssertionError if a word does not fit into the planes of a display: 0 to 1023 for ten planes.
-
-    `words` are whole numbers of any type and shape: the words of a frame buffer, or what a mapping of yours
-    makes for them. The message names the first word that does not fit.
-
-        @given(rasters())
-        def test_my_dithering_stays_within_the_planes(words):
-            check_words_within_planes(my_dithering(words))
-
-    >>> check_words_within_planes([[0, 1023], [7, 1024]])
-    Traceback (most recent call last):
-    AssertionError: words must be whole numbers from 0 to 1023, not 1024 (line 1, element 1)
-    """
-    __tracebackhide__ = True  # pytest then points to the test.
-    array = np.asarray(words)
-    rule = f"words must be whole numbers from 0 to {(1 << planes) - 1}"
-    if array.size and array.dtype.kind not in "iu":
-        raise AssertionError(f"{rule}, not {array.dtype}")
-    outside = np.argwhere((array < 0) | (array >= 1 << planes))
-    if len(outside):
-        index = tuple(outside[0].tolist())
-        place = {0: "", 1: " (at index {})", 2: " (line {}, element {})"}.get(array.ndim, f" (at {index})")
-        more = f", and {len(outside) - 1} more" if len(outside) > 1 else ""
-        raise AssertionError(f"{rule}, not {array[index]}{place.format(*index)}{more}")

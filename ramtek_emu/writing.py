@@ -3,22 +3,20 @@
 The bytes go into a temporary file in the same folder, which is synced, unless the caller declines, and then
 renamed. Both packages write their files with this module.
 
-At its exit, Python removes the temporary files of the process. If the process is killed, they stay. They are
-locked while their program lives, so the next program that writes a file of the same name knows, and removes
-them. Nothing else in the folder is touched.
+If writing fails or is interrupted, the temporary file is removed. If the process is killed, the file stays
+with the bytes so far, such as the words of a recording. Its name is `.NAME.XXXXXXXX.part`, with eight random
+digits, and no program removes it.
 """
 
 from __future__ import annotations
 
-import atexit
 import errno
 import os
-import stat
-import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from itertools import combinations
 from pathlib import Path
+from secrets import token_hex
 from typing import Final
 
 from ramtek_emu.errors import OutputError, OutputExistsError, WriteError, reason_of
@@ -40,9 +38,6 @@ NO_PLACE: Final = (
 NO_LINKS: Final = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
 """The errors of file systems without hard links."""
 
-_PARTS: Final[set[Path]] = set()
-"""The temporary files of this process."""
-
 
 class Output:
     """A file that is written piece by piece under a temporary name; `keep` gives it its own name."""
@@ -55,9 +50,11 @@ class Output:
         # Follow links: the file that a link names is replaced, and the link is kept.
         self.path = Path(os.path.realpath(path))
         try:
-            self._beside, descriptor = _new_part(self.path)
+            # Programs that write the same path at once have temporary files of their own.
+            # A name of so few letters, of up to four bytes, leaves room for the rest.
+            self._beside = self.path.with_name(f".{self.path.name[:50]}.{token_hex(4)}.part")
             # The end of the with statement closes it.
-            self._file = open(descriptor, "wb")  # noqa: SIM115
+            self._file = open(self._beside, "xb")  # noqa: SIM115
         except OSError as error:
             raise refusal(self.path, error) from None
 
@@ -86,9 +83,8 @@ class Output:
             self._file.flush()
             if self.sync:
                 os.fsync(self._file.fileno())
-            if sys.platform == "win32":
-                # Open files cannot be renamed there. Elsewhere the file is locked until it has its name.
-                self._file.close()
+            # Windows cannot rename open files.
+            self._file.close()
             _name(self._beside, self.path, self.overwrite)
             if self.sync:
                 sync_folder(self.path.parent)
@@ -104,7 +100,8 @@ class Output:
         """Remove the temporary file if it was not kept."""
         with suppress(OSError):
             self._file.close()
-        _remove(self._beside)
+        with suppress(OSError):
+            os.unlink(self._beside)
 
 
 def write_atomically(
@@ -131,14 +128,10 @@ def write_numbered(data: bytes, folder: Path, name: str, suffix: str) -> Path:
     number = 1
     while True:
         path = folder / f"{name}-{number:04d}{suffix}"
-        number += 1
-        if path.exists():
-            continue
-        try:
+        with suppress(OutputExistsError):
             write_atomically(path, data, overwrite=False)
-        except OutputExistsError:
-            continue
-        return path.resolve()
+            return path.resolve()
+        number += 1
 
 
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
@@ -231,99 +224,3 @@ def sync_folder(folder: Path) -> None:
             os.fsync(number)
         finally:
             os.close(number)
-
-
-# Temporary files. A `.part` file that nobody has locked was left by a program that was killed.
-
-
-def _new_part(path: Path) -> tuple[Path, int]:
-    """A new temporary file beside a path, and its locked descriptor. A file that was left is removed first.
-
-    Each of several programs that write the same path at once has a file with another number.
-    """
-    number = 0
-    while True:
-        number += 1
-        part = path.with_name(f".{path.name[:100]}.{number}.part")
-        _remove_left(part)
-        # An interrupt may come before the system says that the file is there.
-        _PARTS.add(part)
-        try:
-            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-            descriptor = os.open(part, flags, 0o666)
-        except OSError as error:
-            _PARTS.discard(part)
-            if isinstance(error, FileExistsError):
-                continue
-            raise
-        try:
-            lock(descriptor)
-            is_ours = _is_named(part, descriptor)
-        except BlockingIOError:
-            # Another program took the file for one that was left, and removes it.
-            is_ours = False
-        except OSError:
-            # Without locks, as on some network drives, no program removes files of others.
-            is_ours = True
-        if is_ours:
-            return part, descriptor
-        _PARTS.discard(part)
-        os.close(descriptor)
-
-
-def _remove_left(part: Path) -> None:
-    """Remove a temporary file that a killed program left; no link and no other kind of file is removed."""
-    with suppress(OSError):
-        if not stat.S_ISREG(os.lstat(part).st_mode):
-            return
-        if sys.platform == "win32":
-            # A file that a program has open cannot be removed there.
-            os.unlink(part)
-            return
-        with open(os.open(part, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
-            lock(file.fileno())
-            if _is_named(part, file.fileno()):
-                os.unlink(part)
-
-
-def _is_named(part: Path, descriptor: int) -> bool:
-    """Whether the file of a descriptor still has its name."""
-    try:
-        return os.path.samestat(os.fstat(descriptor), os.lstat(part))
-    except FileNotFoundError:
-        return False
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def lock(descriptor: int) -> None:
-        """Lock an open file until it is closed or its program ends. Raises OSError if it is locked."""
-        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-else:
-    import fcntl
-
-    def lock(descriptor: int) -> None:
-        """Lock an open file or folder until it is closed or its program ends.
-
-        Raises BlockingIOError if others have the lock, and OSError if the file system has no locks.
-        """
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-def _remove(part: Path) -> None:
-    """Remove a temporary file, if it is still there."""
-    with suppress(OSError):
-        os.unlink(part)
-    _PARTS.discard(part)
-
-
-@atexit.register
-def _remove_parts() -> None:
-    for part in tuple(_PARTS):
-        _remove(part)
-
-
-if hasattr(os, "register_at_fork"):
-    # The files belong to the process that created them.
-    os.register_at_fork(after_in_child=_PARTS.clear)

@@ -74,8 +74,8 @@ PLACES = {
     ("pygame",): {("ramtek_emu.monitor.glass", True)},
     # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
     ("PIL",): {
-        ("ramtek_emu.png", False), ("ramtek_emu.films", True), ("autocolor.batches.outputs", False),
-        ("autocolor.scene.kinds", False),
+        ("ramtek_emu.png", False), ("ramtek_emu.films", True), ("ramtek_emu.snapshot", False),
+        ("autocolor.batches.outputs", False), ("autocolor.images", False), ("autocolor.scene.kinds", False),
     },
     ("platformdirs",): {("autocolor.files.state", True)},
     ("vtkmodules",): {

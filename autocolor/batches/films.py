@@ -42,7 +42,7 @@ FRAMES_PER_SECOND: Final = 24.0
 """Assumed: the rate of motion pictures."""
 
 STREAM: Final = ".ramtek"
-FILMS: Final = (".webp", ".apng")
+FILM: Final = ".webp"
 
 Progress = Callable[[Result], object]
 """A function that is called with the result of each frame."""
@@ -137,9 +137,9 @@ def animate(
 def kind_of(path: str) -> str:
     """The suffix of an animation's file. Raises UsageError for a name of another kind."""
     suffix = Path(path).suffix.lower()
-    if suffix not in (*FILMS, STREAM) and not (suffix == ".png" and "{" in path):
+    if suffix not in (FILM, STREAM) and not (suffix == ".png" and "{" in path):
         raise UsageError(
-            "an animation must be written to .webp, .apng, .ramtek, or numbered pictures such as"
+            "an animation must be written to .webp, .ramtek, or numbered pictures such as"
             f" frame-{{number:04}}.png, not to {shown(path)}; rename it"
         )
     return suffix

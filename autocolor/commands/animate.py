@@ -19,7 +19,7 @@ from ramtek_emu.command_line import tell
 EXAMPLES: Final = """\b
 Examples:
   autocolor animate scenes/coupe --turn 360 --frames 72 -o around.webp
-  autocolor animate scenes/coupe --vary lights.key.position=[-8,-6,5],[2,-6,5] -o sweep.apng
+  autocolor animate scenes/coupe --vary lights.key.position=[-8,-6,5],[2,-6,5] -o sweep.webp
   autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy,red -o fade.webp
   autocolor animate scenes/coupe --table looks.csv -o "looks/{number:04}.png" --jobs 4
   autocolor animate coupe.npz --vary surfaces.body.object_color=red,navy -o fade.ramtek
@@ -51,7 +51,7 @@ FRAMES: Final = 48
 @option(
     "-o --output",
     "FILE",
-    "File to write: .webp or .apng, which lose nothing, a name pattern for numbered pictures"
+    "File to write: .webp, which loses nothing, a name pattern for numbered pictures"
     " such as {number:04}.png, or .ramtek, a load of the lookup table a frame.",
     required=True,
 )

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -18,7 +19,23 @@ import ramtek_emu
 from autocolor.arrays import AnyArray
 from autocolor.errors import InputError, MissingInputError, OutputError, UsageError, WriteError, reason_of
 from ramtek_emu import writing
-from ramtek_emu.writing import lock as lock
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def lock(descriptor: int) -> None:
+        """Lock an open file until it is closed or its program ends. Raises OSError if it is locked."""
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+else:
+    import fcntl
+
+    def lock(descriptor: int) -> None:
+        """Lock an open file or folder until it is closed or its program ends.
+
+        Raises BlockingIOError if others have the lock, and OSError if the file system has no locks.
+        """
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
 
 Guard = Callable[[Path], Callable[[], None]]
 """A check before a file is overwritten, which returns a second check for the moment of overwriting.

@@ -260,7 +260,9 @@ def instructions_and_operands() -> str:
             for words in ("named by flags" if row.fixed is None else ", ".join(row.fixed) or "none",)
         ),
         f"\nNCAR ramtek.h alone has the numbers and the names of {len(UNIMPLEMENTED)} other opcodes: ",
-        ", ".join(f"{row.opcode:02X} {row.name}" for row in UNIMPLEMENTED),
+        ", ".join(
+            f"{row.opcode:02X} {row.name}" for row in sorted(UNIMPLEMENTED, key=lambda row: row.opcode)
+        ),
         ".\n\n| flag word, bit | operand | words | source |\n|---|---|---|---|\n",
     ]
     for word, operands in enumerate((OPERANDS_1, OPERANDS_2), 1):

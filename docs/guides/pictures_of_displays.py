@@ -233,13 +233,12 @@ def inspect_pixel() -> Field:
     (listing,) = (block.text for block in blocks if block.text.startswith("; chart.txt"))
     words = np.frombuffer(b"".join(assemble(listing.splitlines())), "<u2")
     inspector = Inspector(inspection_of(Replay(Stream(words=words.astype(np.uint16)))))
-    for key in ("end", "["):
-        inspector.press(Key(key))
-        if key == "end":
-            for action in ("move", "press", "release"):
-                inspector.point(Pointer(502, 302, False, action, 0 if action == "move" else 1))
-        while is_busy(inspector.session):
-            inspector.page.session = tick(inspector.session)
+    inspector.press(Key("end"))
+    for action in ("move", "press", "release"):
+        inspector.point(Pointer(502, 302, action, 0 if action == "move" else 1))
+    inspector.press(Key("left"))
+    while is_busy(inspector.session):
+        inspector.page.session = tick(inspector.session)
     return inspector.page.colors()
 
 

@@ -29,7 +29,7 @@ def assemble(listing: str, output: str, force: bool) -> None:
     """Assemble LISTING, which `ramtek list` printed or you wrote in the same form; - is stdin."""
     if output != "-":
         refuse_outputs(force, output)
-    file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
+    file = io.TextIOWrapper(open_stream(listing), encoding="utf-8-sig", errors="replace")
 
     from ramtek_emu.instruction_set.assembler import assemble as assembled
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Final
@@ -45,16 +44,21 @@ def conformance(
 
     claims = [claim for claim in all_claims() if all(map(claim.is_about, only))]
     if command:
-        if shutil.which(command[0]) is None:
-            raise click.UsageError(f"COMMAND must be a program, not {command[0]!r}; give its path")
         claims = [claim for claim in claims if not claim.in_process]
     if not claims:
+        testable = " that a pipe can test" if command else ""
         raise click.UsageError(
-            f"--only must be the key of a claim, not {' and '.join(only)}; see the first column of the table"
+            f"--only must be the key of a claim{testable}, not {' and '.join(only)}; "
+            "see the first column of the table"
         )
     run = partial(failure_on, command=command, seconds=seconds) if command else failure_here
     with ThreadPoolExecutor(os.cpu_count() if command else 1) as pool:
-        failures = list(pool.map(run, claims))
+        try:
+            failures = list(pool.map(run, claims))
+        except OSError as cause:
+            raise click.UsageError(
+                f"COMMAND must be a program, not {command[0]!r} ({cause.strerror}); give its path"
+            ) from cause
 
     click.echo(f"{'subject':<14}{'claims':>7}{'passed':>8}{'failed':>8}")
     for subject in dict.fromkeys(claim.subject for claim in claims):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from itertools import takewhile
 from typing import Any, Final
 
 import click
@@ -17,9 +16,6 @@ Examples:
   ramtek diff yesterday.ramtek today.ramtek --json
   ramtek inspect today.ramtek --at 120        the display after the instruction that was found
 """
-
-MOST_SHOWN: Final = 8
-"""The most words of a reply that are printed."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -87,18 +83,11 @@ def lines_of(where: dict[str, Any]) -> Iterator[str]:
                 f"{value['values'][0]} and {value['values'][1]}"
             )
         elif name == "reply":
-            pairs = zip(*value, strict=False)
-            alike = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-            counts = " and ".join(f"{len(words):,}" for words in value)
-            rests = " and ".join(_beginning(words[alike:]) for words in value)
-            yield f"reply: {counts} words; from word {alike} on {rests}"
+            first, second = value
+            pairs = enumerate(zip(first, second, strict=False))
+            alike = next((n for n, (one, other) in pairs if one != other), min(len(first), len(second)))
+            yield f"reply: {len(first):,} and {len(second):,} words, which differ from word {alike} on"
         elif isinstance(value, str):
             yield f"{name}: they {value}"
         else:
             yield f"{name}: {json.dumps(value[0])} and {json.dumps(value[1])}"
-
-
-def _beginning(words: list[int]) -> str:
-    """The first words of a reply."""
-    shown = [*map(str, words[:MOST_SHOWN]), *(["..."] if len(words) > MOST_SHOWN else [])]
-    return " ".join(shown) or "nothing"

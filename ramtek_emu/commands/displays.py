@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import os
 import select
 import signal
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from ramtek_emu import command_line
 from ramtek_emu.command_line import ENDING, SIGNALS
@@ -30,7 +32,9 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
     """The names of configurations, for completion in a shell, in upper or lower case."""
-    return [name for name in CONFIGURATIONS if name.startswith(incomplete.upper())]
+    names = [name.lower().replace("_", "-") for name in CONFIGURATIONS]
+    names += [f"{name}-monochrome" for name in names]
+    return [name for name in names if name.startswith(incomplete.lower().replace("_", "-"))]
 
 
 configuration_option: Final = click.option(
@@ -88,6 +92,14 @@ def display_asked_for(
     return display
 
 
+def refuse_given(context: click.Context, where: str, *options: str) -> None:
+    """Refuse options of the command line that have no effect, such as "without --film"."""
+    for option in options:
+        if context.get_parameter_source(option) is ParameterSource.COMMANDLINE:
+            name = f"--{option.replace('_', '-')}"
+            raise click.UsageError(f"{name} must not be given {where}, where it has no effect; leave it out")
+
+
 def refuse_outputs(force: bool, *paths: str | None, pictures: Sequence[str | None] = ()) -> None:
     """Refuse outputs that cannot be written; call it before the work. None means no output.
 
@@ -106,26 +118,10 @@ def refuse_outputs(force: bool, *paths: str | None, pictures: Sequence[str | Non
         )
 
 
-Handler = Callable[[int, object], object] | signal.Handlers
-
-
-@contextmanager
-def handling(handlers: Mapping[int, Handler]) -> Iterator[None]:
-    """Handle signals within a `with` block. Signals that the program's parent ignores stay ignored."""
-    before = {
-        number: signal.signal(number, handler)
-        for number, handler in handlers.items()
-        if signal.getsignal(number) is not signal.SIG_IGN
-    }
-    try:
-        yield
-    finally:
-        for number, previous in before.items():
-            signal.signal(number, previous)
-
-
 WAIT_SECONDS: Final = 0.1
 """Limit: how long a signal may be unnoticed while nothing arrives."""
+REST_SECONDS: Final = 1.0
+"""Assumed: a host that sends nothing for so long has drawn its picture and loaded its table."""
 
 
 class Run:
@@ -146,6 +142,8 @@ class Run:
         """Records words; None if no recording was asked for."""
         self.hints: set[str] = set()
         """The subjects of the hints that were printed."""
+        self._rest = 0, math.inf
+        """The count of words received, and the time at which their host is at rest."""
 
     def hint(self, display: Ramtek9300) -> str:
         """Print a hint, once, about words that are all black, and about an instruction that is missing.
@@ -156,11 +154,24 @@ class Run:
         if "dark" not in self.hints and display.scan_out.is_dark:
             hints["dark"] = "words were drawn, and nothing is lit: --table gray shows them (F2 in a window)"
         if "foreign" not in self.hints and foreign is not None:
-            hints["foreign"] = f"{foreign} is no instruction of a 9300; --configuration family has it"
+            hints["foreign"] = f"a 9300 does not take {foreign}, but the display FAMILY does"
         self.hints |= hints.keys()
         for hint in hints.values():
             tell(hint)
         return "; ".join(hints.values())
+
+    def hint_at_rest(self, display: Ramtek9300, seconds: float) -> str:
+        """Print the hints once the host has sent no words for REST_SECONDS; returns them as `hint` does.
+
+        `seconds` is the time of any clock; call this function in each turn of a window.
+        """
+        words, rests_at = self._rest
+        if display.words_received != words:
+            self._rest = display.words_received, seconds + REST_SECONDS
+        elif seconds >= rests_at:
+            self._rest = words, math.inf
+            return self.hint(display)
+        return ""
 
     def receive(self, number: int, _: object) -> None:
         """Remember a signal."""
@@ -181,14 +192,9 @@ class Run:
         return False
 
     def attempt(self, write: Callable[[], object]) -> bool:
-        """Write an output, and return True; if that fails, report the reason and return False.
-
-        A film is written while its stream is read. If the stream fails, MissingInputError is raised.
-        """
+        """Write an output, and return True; if that fails, report the reason and return False."""
         try:
             write()
-        except MissingInputError:
-            raise
         except RamtekError as failure:
             self.fail(failure)
             return False
@@ -214,7 +220,11 @@ def running(
     command ends with its exit code. After any other error, no output is written.
     """
     run = Run()
-    with handling(dict.fromkeys(ENDING, run.receive)), ExitStack() as opened:
+    with ExitStack() as handled, ExitStack() as opened:
+        for number in ENDING:
+            # A signal that the program's parent ignores stays ignored.
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                handled.callback(signal.signal, number, signal.signal(number, run.receive))
         if record is not None:
             recording = opened.enter_context(Output(record, overwrite=force))
 
@@ -245,18 +255,12 @@ def running(
 
 def open_stream(path: str) -> BinaryIO:
     """The input file, stdin for `-`; MissingInputError if it cannot be read."""
-    if path == "":
-        raise click.UsageError("an input must be the name of a file, not ''; give it one")
     if path == "-":
         if sys.stdin is None:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
         return sys.stdin.buffer
     try:
-        if Path(path).is_dir():
-            raise MissingInputError(f"a stream must be a file, not the folder {path}; name a file in it")
         return open(path, "rb")
-    except MissingInputError:
-        raise
     except (OSError, ValueError) as cause:
         raise MissingInputError(
             f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"
@@ -287,10 +291,7 @@ def read_stream(path: str, configuration: Configuration) -> Stream:
         )
     words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
     stream = Stream(configuration, words)
-    if rest := len(words) - int(stream.ends[-1]):
-        tell(f"the stream {path} ends within an instruction: its {rest} words were dropped")
-    if len(data) % 2:
-        tell(f"the stream {path} ends within a word: its last byte was dropped")
+    tell_incomplete(f"the stream {path}", len(words) - int(stream.ends[-1]), len(data) % 2 != 0)
     return stream
 
 
@@ -319,53 +320,40 @@ def show(
     While `waits()` is true, `serve_for` itself waits for a host's words, and the window does not wait for
     input.
     """
-    from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
-
-    rested_at = 0
+    from ramtek_emu.monitor.window import Monitor
 
     def tick() -> None:
-        nonlocal rested_at
         if run.ends:
             monitor.close()
         else:
-            before = display.words_received
             serve_for(TICK_SECONDS)
-            # A program that draws may load the table in the end: wait until it rests.
-            if rested_at != before == display.words_received:
-                rested_at = before
-                if hint := run.hint(display):
-                    monitor.tell(hint)
+            if hint := run.hint_at_rest(display, time.monotonic()):
+                monitor.tell(hint)
 
     monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
-    monitor.open()
-    try:
-        while monitor.is_open:
-            monitor.step(0 if waits() else TICK_MILLISECONDS)
-    finally:
-        monitor.close()
+    monitor.run(waits)
 
 
-def tell_unexecuted(words: int) -> None:
-    """Report words that had arrived when the display ended."""
-    if words:
-        things = "word of the host arrived and was" if words == 1 else "words of the host arrived and were"
-        tell(f"{words:,} {things} not executed")
-
-
-def tell_the_end(session: HostSession, is_cut_off: bool = False) -> None:
-    """Report words that were not executed: illegal words, instructions without effect, an incomplete end.
-
-    With `is_cut_off`, a signal ended the stream.
-    """
-    end = "a signal ended the stream" if is_cut_off else "the stream ends"
+def tell_the_end(session: HostSession) -> None:
+    """Report words that were not executed: illegal words, instructions without effect, an incomplete end."""
     processor = session.display.processor
-    illegal, unknown = processor.illegal_words, processor.unimplemented
-    if illegal:
-        tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
-    if unknown:
-        plural = "instruction is" if unknown == 1 else "instructions are"
-        tell(f"{unknown} {plural} known by name only: without effect")
-    if rest := session.display.decoder.pending_words:
-        tell(f"{end} within an instruction: its {rest} words were dropped")
-    if session.odd_byte:
-        tell(f"{end} within a word: its last byte was dropped")
+    if illegal := processor.illegal_words:
+        tell(f"words that begin no instruction, skipped: {illegal}")
+    if unknown := processor.unimplemented:
+        tell(f"instructions known by name only, without effect: {unknown}")
+    tell_unexecuted(session)
+    tell_incomplete("the stream", session.display.decoder.pending_words, session.odd_byte != b"")
+
+
+def tell_unexecuted(session: HostSession) -> None:
+    """Report that the display has ended within the words of a host."""
+    if session.unexecuted:
+        tell("the display ended before it had executed all words of the host")
+
+
+def tell_incomplete(stream: str, words: int, has_odd_byte: bool) -> None:
+    """Report the words of an instruction, and the byte, that begin at the end of a stream."""
+    if words:
+        tell(f"{stream} ends within an instruction: its {words} words were dropped")
+    if has_odd_byte:
+        tell(f"{stream} ends within a word: its last byte was dropped")

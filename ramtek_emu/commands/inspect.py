@@ -1,4 +1,4 @@
-"""`ramtek inspect`: a stream at any of its instructions, and who wrote a pixel or an entry."""
+"""`ramtek inspect`: a stream at any of its instructions, and who wrote a pixel."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ramtek_emu.commands.displays import (
+    Run,
     configuration_option,
     display_asked_for,
     read_stream,
@@ -21,7 +22,6 @@ from ramtek_emu.commands.displays import (
 from ramtek_emu.writing import write_atomically
 
 if TYPE_CHECKING:
-    from ramtek_emu.inspection.histories import Write
     from ramtek_emu.inspection.replay import Replay
 
 EXAMPLES: Final = """\b
@@ -31,7 +31,6 @@ Examples:
   ramtek inspect drawing.ramtek --at 120 --snapshot s.png  the display after 120 instructions, to go on with
   ramtek inspect drawing.ramtek --range 80..120 -o part    the words of instructions 80 to 120
   ramtek inspect drawing.ramtek --who 150,200              the instructions that wrote element 150, line 200
-  ramtek inspect drawing.ramtek --who-entry 7 --json       the table loads that wrote entry 7
 """
 
 
@@ -81,12 +80,6 @@ class NumberPair(click.ParamType[tuple[int, int]]):
     help="List the instructions that wrote a word of the memory, the newest first.",
 )
 @click.option(
-    "--who-entry",
-    type=click.IntRange(min=0),
-    metavar="ENTRY",
-    help="List the instructions that wrote an entry of the lookup table.",
-)
-@click.option(
     "--json",
     "as_json",
     is_flag=True,
@@ -103,7 +96,6 @@ def inspect(
     snapshot: str | None,
     numbers: tuple[int, int] | None,
     who: tuple[int, int] | None,
-    who_entry: int | None,
     as_json: bool,
     force: bool,
     configuration: str | None,
@@ -114,10 +106,8 @@ def inspect(
 
     It opens a window, unless a picture, a question or JSON is asked for.
     """
-    if who is not None and who_entry is not None:
-        raise click.UsageError("a question must be --who or --who-entry, not both; ask twice")
-    if numbers is not None and output is None:
-        raise click.UsageError("a range must have an output; add -o OUT")
+    if numbers is not None:
+        refuse_range(numbers, at, output)
     refuse_outputs(force, *([output] if numbers else ()), pictures=[snapshot, None if numbers else output])
     display = display_asked_for(configuration, start, table)
 
@@ -126,25 +116,30 @@ def inspect(
     sizes = display.configuration
     refuse_outside("an element", None if who is None else who[0], sizes.elements - 1)
     refuse_outside("a line", None if who is None else who[1], sizes.lines - 1)
-    refuse_outside("an entry", who_entry, sizes.entries - 1)
     replay = Replay(read_stream(stream, sizes), display)
-    last = len(replay.stream)
+    run, last = Run(), len(replay.stream)
     refuse_outside("an instruction", at, last, stream)
-    refuse_outside("an instruction", None if numbers is None else max(numbers), last, stream)
-    asks = who is not None or who_entry is not None
-    if output is None and snapshot is None and not asks and not as_json:
-        from ramtek_emu.inspection.inspector import inspect
+    refuse_outside("an instruction", None if numbers is None else numbers[1], last, stream)
+    if output is None and snapshot is None and who is None and not as_json:
+        from ramtek_emu.inspection.inspector import Inspector
+        from ramtek_emu.inspection.session import inspection_of
+
+        def hint(seconds: float) -> str:
+            # Before the end, the stream may still load the table.
+            return run.hint_at_rest(replay.display, seconds) if replay.number == last else ""
 
         replay.go_to(0 if at is None else at)
-        inspect(replay, f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}")
+        caption = f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}"
+        Inspector(inspection_of(replay), caption).run(hint)
         return
     number = last if at is None else at
     if numbers is not None and output is not None:
-        words = replay.stream.words_between(max(0, numbers[0] - 1), numbers[1])
+        words = replay.stream.words_between(numbers[0] - 1, numbers[1])
         write_atomically(Path(output), words.astype("<u2").tobytes(), overwrite=force)
         tell(f"wrote {output}")
     elif output is not None:
         replay.go_to(number)
+        run.hint(replay.display)
         replay.display.save_png(output, overwrite=force)
         tell(f"wrote {output}")
     if snapshot is not None:
@@ -153,11 +148,22 @@ def inspect(
         replay.go_to(number)
         write_snapshot(replay.display, snapshot, overwrite=force)
         tell(f"wrote {snapshot}")
-    if asks:
-        answer(replay, who, who_entry, number, as_json)
+    if who is not None:
+        answer(replay, who, number, as_json)
     elif as_json:
         replay.go_to(number)
         click.echo(json.dumps(plain_moment(replay)))
+
+
+def refuse_range(numbers: tuple[int, int], at: int | None, output: str | None) -> None:
+    """Refuse a range that is empty, or that other options do not go with."""
+    if output is None:
+        raise click.UsageError("a range must have an output; add -o OUT")
+    if at is not None:
+        raise click.UsageError("a stream must be asked for --at or --range, not both; ask twice")
+    first, last = numbers
+    if not 1 <= first <= last:
+        raise click.UsageError(f"a range must be A..B with 1 <= A <= B, not {first}..{last}; correct it")
 
 
 def refuse_outside(thing: str, value: int | None, most: int, place: str = "") -> None:
@@ -167,34 +173,23 @@ def refuse_outside(thing: str, value: int | None, most: int, place: str = "") ->
         raise click.UsageError(f"{thing} must be 0 to {most}, not {value}{where}; choose a smaller number")
 
 
-def answer(replay: Replay, who: tuple[int, int] | None, entry: int | None, until: int, as_json: bool) -> None:
-    """Print the instructions that wrote a word or an entry, the newest first."""
-    from ramtek_emu.inspection.histories import EntryRange, finished, history_of
+def answer(replay: Replay, pixel: tuple[int, int], until: int, as_json: bool) -> None:
+    """Print the instructions that wrote a word of the memory, the newest first."""
+    from ramtek_emu.inspection.histories import finished, history_of
     from ramtek_emu.memory.scan_orders import Window
 
-    selection: Window | EntryRange
-    if who is not None:
-        selection, thing = Window(*who, *who), f"element {who[0]}, line {who[1]}"
-    else:
-        selection, thing = EntryRange(entry or 0, (entry or 0) + 1), f"entry {entry}"
-    writes = finished(history_of(replay, selection, until))[::-1]
+    writes = finished(history_of(replay, Window(*pixel, *pixel), until))[::-1]
     if as_json:
-        rows = (json.dumps(plain_write(replay, write)) for write in writes)
-        click.echo("[" + ",\n ".join(rows) + "]")
+        rows = (
+            write._asdict() | {"instruction": replay.stream.item(write.number).to_plain()} for write in writes
+        )
+        click.echo("[" + ",\n ".join(map(json.dumps, rows)) + "]")
         return
-    form = "04X" if who is not None else "06X"
     for write in writes:
         listed = next(replay.stream.item(write.number).lines())
-        click.echo(f"{write.number:>8}  {write.before:{form}} -> {write.after:{form}}  {listed}")
+        click.echo(f"{write.number:>8}  {write.before:04X} -> {write.after:04X}  {listed}")
     if not writes:
-        tell(f"none of the first {until} instructions writes {thing}")
-
-
-def plain_write(replay: Replay, write: Write) -> dict[str, Any]:
-    """A write in plain values, with its instruction as `ramtek list --json` writes it."""
-    return {"number": write.number, "before": write.before, "after": write.after} | {
-        "instruction": replay.stream.item(write.number).to_plain()
-    }
+        tell(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")
 
 
 def plain_moment(replay: Replay) -> dict[str, Any]:
@@ -202,7 +197,5 @@ def plain_moment(replay: Replay) -> dict[str, Any]:
     from ramtek_emu.inspection.differences import plain_values
 
     instruction = replay.stream.item(replay.number).to_plain() if replay.number else None
-    reply = [] if replay.reply is None else replay.reply.tolist()
-    return {"number": replay.number, "of": len(replay.stream), "instruction": instruction, "reply": reply} | (
-        plain_values(replay.display)
-    )
+    place = {"number": replay.number, "of": len(replay.stream), "instruction": instruction}
+    return place | {"reply": replay.reply.tolist()} | plain_values(replay.display)

@@ -7,7 +7,7 @@ from typing import Final
 
 import click
 
-from ramtek_emu.commands.displays import complete_configurations, open_stream
+from ramtek_emu.commands.displays import configuration_option, open_stream
 from ramtek_emu.configuration import GMR_9300, checked_configuration
 
 EXAMPLES: Final = """\b
@@ -22,13 +22,10 @@ PIECE: Final = 1 << 18
 
 @click.command(name="list", epilog=EXAMPLES)
 @click.argument("stream", type=click.Path())
+@configuration_option
 @click.option(
-    "--configuration",
-    metavar="NAME",
-    shell_complete=complete_configurations,
-    help="The display for which the stream is; GMR_9300 if not given.",
+    "--json", "as_json", is_flag=True, help="One object for each instruction, with its words in hexadecimal."
 )
-@click.option("--json", "as_json", is_flag=True, help="One object for each instruction.")
 def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
     """List STREAM, a file of 16-bit words with the low byte first, as instructions; - is stdin.
 
@@ -47,10 +44,10 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
     separator = "["
     for item in listed:
         # A row of illegal words may be as long as the file.
-        click.echo(f'{separator}{json.dumps(item.to_plain())[:-1]}, "words": [', nl=False)
+        click.echo(f'{separator}{json.dumps(item.to_plain())[:-1]}, "words": "', nl=False)
         for first in range(0, len(item.words), PIECE):
-            comma = ", " if first else ""
-            click.echo(comma + json.dumps(item.words[first : first + PIECE].tolist())[1:-1], nl=False)
-        click.echo("]}", nl=False)
+            words = item.words[first : first + PIECE].astype(">u2").tobytes().hex(" ", 2).upper()
+            click.echo((" " if first else "") + words, nl=False)
+        click.echo('"}', nl=False)
         separator = ",\n "
     click.echo("[]" if separator == "[" else "]")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import click
-from click.core import ParameterSource
 
 from ramtek_emu.command_line import Ended
 from ramtek_emu.commands.displays import (
@@ -14,19 +14,17 @@ from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
     open_stream,
+    refuse_given,
     refuse_outputs,
     running,
     show,
     tell,
     tell_the_end,
-    tell_unexecuted,
     unreadable,
 )
-from ramtek_emu.errors import ColorsError, MissingInputError
 
 if TYPE_CHECKING:
-    from ramtek_emu.host.pipe import CutReader
-    from ramtek_emu.host.server import HostSession
+    from ramtek_emu.arrays import Colors
 
 EXAMPLES: Final = """\b
 Examples:
@@ -38,14 +36,10 @@ Examples:
   old_program | ramtek play - -o drawing.png --record drawing.ramtek
 """
 
-FRAMES_PER_SECOND: Final = 24.0
-"""Assumed: the rate of motion pictures, as of `autocolor animate`."""
-
 
 @click.command(epilog=EXAMPLES)
 @click.argument("stream", type=click.Path())
 @display_options
-@click.option("--window", is_flag=True, help="Open the window even if a picture is written.")
 @click.option(
     "--loads-per-second",
     type=click.IntRange(1, 1000),
@@ -55,7 +49,7 @@ FRAMES_PER_SECOND: Final = 24.0
 @click.option(
     "--film",
     metavar="FILE",
-    help="Write a film: .webp or .apng, which lose nothing, or a name pattern for numbered pictures such as"
+    help="Write a film: .webp, which loses nothing, or a name pattern for numbered pictures such as"
     " {number:04}.png. Its last frame is the picture at the end.",
 )
 @click.option(
@@ -66,8 +60,9 @@ FRAMES_PER_SECOND: Final = 24.0
 )
 @click.option(
     "--fps",
-    type=float,
-    default=FRAMES_PER_SECOND,
+    # The limits are those of `films`, whose module would import Pillow for each command.
+    type=click.FloatRange(0.1, 100),
+    default=24.0,
     show_default=True,
     metavar="RATE",
     help="Frames per second of the film.",
@@ -84,7 +79,6 @@ def play(
     start: str | None,
     force: bool,
     record: str | None,
-    window: bool,
     loads_per_second: int | None,
     film: str | None,
     every: int | None,
@@ -96,17 +90,20 @@ def play(
     Without -o, --snapshot or --film it is shown in a window. The replies to instructions that read are
     dropped.
     """
-    in_window = window or (output is None and snapshot is None and film is None)
-    if loads_per_second is not None and not in_window:
-        raise click.UsageError("--loads-per-second is for the window; add --window, or leave it out")
-    refuse_film(context, film, force)
+    in_window = output is None and snapshot is None and film is None
+    if not in_window:
+        refuse_given(context, "with an output", "loads_per_second")
+    if film is None:
+        refuse_given(context, "without --film", "every", "fps", "once")
+    else:
+        from ramtek_emu.films import check_film
+
+        check_film(film, fps, force)
     refuse_outputs(force, record, film, pictures=[output, snapshot])
     file = open_stream(stream)
     display = display_asked_for(configuration, start, table)
 
     from ramtek_emu.host import pipe
-    from ramtek_emu.host.port import waiting_bytes
-    from ramtek_emu.host.server import HostSession
 
     number = file.fileno()
     with file, running(display, output, snapshot, record, force) as run:
@@ -115,85 +112,35 @@ def play(
             try:
                 return os.read(number, most) if run.wait(number) else b""
             except OSError as cause:
-                raise unreadable(cause) from None
-
-        def read_for_window(most: int) -> bytes:
-            # The window stays open with the words that were read.
-            try:
-                return read(most)
-            except MissingInputError as failure:
-                run.fail(failure)
+                # The window stays open, and outputs are written, with the words that were read.
+                run.fail(unreadable(cause))
                 return b""
 
-        session = HostSession(display, run.record)
         if in_window:
-            paced: pipe.Read = read_for_window
+            shown: pipe.Read = read
             if loads_per_second is not None:
-                paced = pipe.PacedReader(paced, loads_per_second, display.configuration)
-            show(display, run, pipe.PolledPipe(session, paced).serve_for)
+                shown = pipe.paced(read, loads_per_second, display.configuration)
+            with pipe.PipeServer(display, shown, record=run.record) as server:
+                show(display, run, server.serve_for)
             return
-        waiting = 0
+        server = pipe.PipeServer(display, read, record=run.record)
         if film is None:
-            pipe.serve_pipe(session, read, None, lambda: run.ends)
+            server.serve(lambda: run.ends)
         else:
             is_cut = pipe.is_load if every is None else pipe.every(every)
-            cut = pipe.CutReader(read, display.configuration, is_cut)
-            write_fields(film, session, cut, run, fps, not once, force)
-            waiting = cut.waiting
-        tell_the_end(session, is_cut_off=run.ends)
-        tell_unexecuted(session.unexecuted + (waiting + waiting_bytes(number)) // 2)
+            cut = pipe.stream_pieces(read, display.configuration, is_cut)
+            fields = pipe.stream_fields(server.session, cut, lambda: run.ends)
+            write_fields(film, fields, run, fps, not once, force)
+        tell_the_end(server.session)
     if run.signal:
         raise Ended(run.signal)
 
 
-def refuse_film(context: click.Context, film: str | None, force: bool) -> None:
-    """Refuse a film that cannot be written, and options of a film without a film, before the work."""
-    given = {name: context.get_parameter_source(name) for name in ("every", "fps", "once")}
-    options = [name for name, source in given.items() if source is ParameterSource.COMMANDLINE]
-    if film is None:
-        if options:
-            raise click.UsageError(f"--{options[0]} is for a film; add --film FILE, or leave it out")
-        return
-    if context.params["window"]:
-        raise click.UsageError(
-            "a film must be written without a window, not with --window; leave it out, or press F3"
-            " in the window to record what it shows"
-        )
-    from ramtek_emu.films import check_film, is_numbered
+def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loop: bool, force: bool) -> None:
+    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on."""
+    from ramtek_emu.films import write_film
 
-    try:
-        check_film(film, context.params["fps"], force)
-    except ColorsError as refusal:
-        raise click.UsageError(str(refusal)) from None
-    for other in filter(None, map(context.params.get, ("output", "snapshot", "record"))):
-        if is_numbered(other, film):
-            raise click.UsageError(
-                f"two outputs must be two files, not {other} and a picture of {film}; rename one"
-            )
-
-
-def write_fields(
-    path: str, session: HostSession, read: CutReader, run: Run, rate: float, loop: bool, force: bool
-) -> None:
-    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on.
-
-    Raises MissingInputError if the stream cannot be read to its end.
-    """
-    from ramtek_emu.films import MOST_FIELDS, write_film
-    from ramtek_emu.host.pipe import StreamFields
-
-    film = StreamFields(session, read, MOST_FIELDS, lambda: run.ends)
-    fields = iter(film)
-    is_written = run.attempt(
-        lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)
-    )
+    if run.attempt(lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)):
+        tell(f"wrote {path}")
     for _ in fields:
         pass
-    if not is_written:
-        return
-    if film.left_out:
-        tell(
-            f"a film such as {path} must have at most {MOST_FIELDS:,} frames, not more: it has the first"
-            f" {MOST_FIELDS - 1:,} and the last; make fewer with --every"
-        )
-    tell(f"wrote {path}, {film.count:,} frame{'' if film.count == 1 else 's'}")

@@ -7,6 +7,7 @@ from typing import ClassVar, Final
 import click
 
 from ramtek_emu.command_line import CommandGroup, version_option
+from ramtek_emu.commands.displays import configuration_option, display_asked_for, refuse_outputs
 
 EXAMPLES: Final = """\b
 Examples:
@@ -46,11 +47,7 @@ class RamtekGroup(CommandGroup):
     metavar="PNG",
     help="Write the picture, open no window.",
 )
-@click.option(
-    "--configuration",
-    metavar="NAME",
-    help="The display to show it on; GMR_9300 if not given. NAME-monochrome has a black-and-white monitor.",
-)
+@configuration_option
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
 @click.option("--full-screen", is_flag=True, help="Fill the screen.")
 @click.option("--fit", is_flag=True, help="Fill the window, at the cost of uneven pixels.")
@@ -72,7 +69,6 @@ def ramtek(
     """
     if context.invoked_subcommand is not None:
         return
-    from ramtek_emu.commands.displays import display_asked_for, refuse_outputs
     from ramtek_emu.monitor.pattern import pattern
 
     refuse_outputs(force, pictures=[output])

@@ -8,7 +8,6 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from typing import Final
 
 import numpy as np
 
@@ -20,9 +19,6 @@ from ramtek_emu.errors import ListingError
 from ramtek_emu.host.joystick import actions
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
-
-MOST_SHOWN: Final = 160
-"""The most characters of replies in a failure."""
 
 
 def failure_here(claim: Claim) -> str:
@@ -98,32 +94,21 @@ def failure_of_the_text(claim: Claim) -> str:
 def failure_on(claim: Claim, command: Sequence[str], seconds: float) -> str:
     """The failure of a claim on a command, which gets the words on stdin and replies on stdout.
 
-    `{}` in the command is the name of the display. A claim that is cut is sent once more, in writes of a
-    byte. A process that has not ended after `seconds` is killed.
+    `{}` in the command is the name of the display. A process that has not ended after `seconds` is killed.
+    OSError if the command cannot be started.
     """
-    data = claim.words.astype("<u2").tobytes()
-    sent = [[data]] if claim.cut != "every" else [[data], [data[n : n + 1] for n in range(len(data))]]
-    for writes in sent:
-        with subprocess.Popen(
+    try:
+        done = subprocess.run(
             [part.replace("{}", claim.display) for part in command],
-            stdin=subprocess.PIPE,
+            input=claim.words.astype("<u2").tobytes(),
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            bufsize=0,
-        ) as process:
-            assert process.stdin is not None
-            try:
-                with suppress(BrokenPipeError):
-                    for write in writes[:-1]:
-                        process.stdin.write(write)
-                given, _ = process.communicate(writes[-1], timeout=seconds)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                return f"the emulator did not end in {seconds:g} s"
-        failure = difference(claim, np.frombuffer(given, "<u2", len(given) // 2))
-        if failure:
-            return failure
-    return ""
+            timeout=seconds,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return f"the emulator did not end in {seconds:g} s"
+    return difference(claim, np.frombuffer(done.stdout, "<u2", len(done.stdout) // 2))
 
 
 def difference(claim: Claim, given: Words) -> str:
@@ -133,9 +118,5 @@ def difference(claim: Claim, given: Words) -> str:
         return ""
     alike = np.flatnonzero(expected[: len(given)] != given[: len(expected)])
     place = int(alike[0]) if len(alike) else min(len(expected), len(given))
-    texts = [_shortened(text_of(words[place:])) for words in (expected, given)]
-    return f"from reply word {place} on, expected {texts[0] or 'nothing'}, given {texts[1] or 'nothing'}"
-
-
-def _shortened(text: str) -> str:
-    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
+    texts = [text_of(words[place:]) or "nothing" for words in (expected, given)]
+    return f"from reply word {place} on, expected {texts[0]:.160}, given {texts[1]:.160}"

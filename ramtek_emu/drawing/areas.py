@@ -1,146 +1,136 @@
-"""Areas: the connected pixels around one pixel, for FILL.
+"""Areas: windows that are filled, and the connected pixels around one pixel, for FILL.
 
 Lines are split into runs of open pixels, and runs of neighboring lines that touch are linked. The area is all
 runs that the links connect to the first run. So the size of the memory bounds the work, for any picture.
 
-A comb whose teeth are one pixel wide has the most runs: a quarter of a second on a display of 1280 x 1024.
-So the functions are generators that pause after MOST_PIXELS pixels or MOST_RUNS runs.
+The work is cut into bands of lines and parts of the runs, with a pause after each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Iterator
-from itertools import pairwise
+from collections.abc import Generator, Iterator
+from functools import partial
 from typing import Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Indices
+from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
+from ramtek_emu.memory.scan_orders import Point, Window
 
-MOST_PIXELS: Final = 1 << 19
-MOST_RUNS: Final = 1 << 16
-"""Limits: the pixels, and the runs, between two pauses of a few milliseconds."""
+MOST_AT_ONCE: Final = 1 << 17
+"""The number of pixels, or of runs, that an instruction draws or compares between two pauses.
 
-Links = tuple[Indices, Indices]
-"""Pairs of runs that touch: the indices of the upper runs, and of the lower runs."""
-Strip = tuple[slice, Dots]
-"""Some lines, and the (lines, elements) dots of an area on them."""
+Limit: a bound on the time between two pauses, 1 to 10 ms.
+"""
 
 
-def area(open_pixels: Dots, line: int, element: int) -> Generator[None, None, Iterator[Strip]]:
-    """Find the open pixels that are connected, up, down, left and right, to the pixel at (line, element).
+def bands(window: Window) -> Iterator[Window]:
+    """Cut a window into bands of whole lines with at most MOST_AT_ONCE pixels, or of one line."""
+    lines = max(1, MOST_AT_ONCE // max(1, window.width))
+    for top in range(window.top, window.bottom + 1, lines):
+        yield window._replace(top=top, bottom=min(top + lines - 1, window.bottom))
 
-    The generator yields None at each pause, and returns an iterator of strips from the top to the bottom.
+
+def fill_window(
+    frame_buffer: FrameBuffer, window: Window, word: int, enable: WriteEnable
+) -> Iterator[None] | None:
+    """Fill a window with a word; returns the pauses if it is large, None if it is filled."""
+    # Filling is quick, and a picture of 640 x 480 is erased often.
+    if window.width * window.height <= 4 * MOST_AT_ONCE:
+        frame_buffer.fill(window, word, enable)
+        return None
+    fill_band = partial(frame_buffer.fill, word=word, enable=enable)
+    return map(fill_band, bands(window.intersection(frame_buffer.window)))
+
+
+def fill_area(
+    frame_buffer: FrameBuffer,
+    window: Window,
+    fenced: Dots,
+    start: Point,
+    word: int,
+    enable: WriteEnable,
+) -> Iterator[None]:
+    """Fill the open pixels that are connected, up, down, left and right, to `start`, and pause at times.
+
+    The window is within the memory and holds `start`; `fenced` are its open pixels, with a closed column on
+    either side, so that every run begins and ends within its line.
     """
-    if not open_pixels[line, element]:
-        return iter(())
-    lines, elements = open_pixels.shape
-    at_once = max(1, MOST_PIXELS // elements)
-    width = elements + 2
-    strips = []
-    for first in range(0, lines, at_once):
-        strips.append(runs_of(open_pixels[first : first + at_once], first * width))
-        yield
-    count = sum(len(starts) for starts, _ in strips)
-    starts = yield from joined((starts for starts, _ in strips), count)
-    ends = yield from joined((ends for _, ends in strips), count)
-    pairs = []
-    for part in parts(count):
-        pairs.append(links(starts, ends, width, part))
+    line, element = start.line - window.top, start.element - window.left + 1
+    if not fenced[line, element]:
+        return
+    width = fenced.shape[1]
+    cut = [slice(band.top - window.top, band.bottom + 1 - window.top) for band in bands(window)]
+    found: list[Indices] = []
+    pairs: list[tuple[Indices, Indices]] = []
+    count = seed = 0
+    above = np.zeros(0, np.intp)
+    for band in cut:
+        # The edges are the first pixel of each run and the pixel after its last, in turns.
+        pixels = fenced[band].reshape(-1)
+        edges = np.flatnonzero(pixels[1:] != pixels[:-1]) + (1 + band.start * width)
+        if band.start <= line < band.stop:
+            seed = count + int(np.searchsorted(edges[::2], line * width + element, side="right")) - 1
+        # Link the runs, those of the last line above the band too.
+        begin = count - len(above) // 2
+        upper, lower = links(np.concatenate((above, edges)), width)
+        pairs.append((upper + begin, lower + begin))
+        found.append(edges)
+        count += len(edges) // 2
+        above = edges[np.searchsorted(edges, (band.stop - 1) * width) :]
         yield
     labels = yield from connected(pairs, count)
-    own = labels[np.searchsorted(starts, line * width + element + 1, side="right") - 1]
-    return strips_of(starts, ends, labels == own, (lines, elements), at_once)
-
-
-def runs_of(open_pixels: Dots, place: int) -> tuple[Indices, Indices]:
-    """The starts and ends of the runs of some lines; the first line begins at `place`.
-
-    A closed column is added on either side, so that every run begins and ends within its line.
-    """
-    fenced = np.zeros((len(open_pixels), open_pixels.shape[1] + 2), np.int8)
-    fenced[:, 1:-1] = open_pixels
-    edges = np.diff(fenced.reshape(-1))
-    return np.flatnonzero(edges == 1) + place + 1, np.flatnonzero(edges == -1) + place + 1
-
-
-def strips_of(
-    starts: Indices, ends: Indices, chosen: Dots, shape: tuple[int, int], at_once: int
-) -> Iterator[Strip]:
-    """The pixels of the chosen runs of (lines, elements) pixels, `at_once` lines at a time."""
-    lines, elements = shape
-    width = elements + 2
-    tops = np.append(np.arange(0, lines, at_once), lines)
-    for (top, bottom), (first, last) in zip(
-        pairwise(tops.tolist()), pairwise(np.searchsorted(starts, tops * width).tolist()), strict=True
-    ):
-        # Measured: for large areas of few runs, repeating takes a twentieth of a sum along the lines.
-        runs = np.flatnonzero(chosen[first:last]) + first
-        cuts = np.zeros(2 * len(runs) + 2, np.intp)
-        cuts[1:-1:2], cuts[2:-1:2], cuts[-1] = starts[runs], ends[runs], bottom * width
-        cuts[0] = top * width
-        is_filled = np.zeros(2 * len(runs) + 1, np.bool_)
-        is_filled[1::2] = True
-        filled = np.repeat(is_filled, np.diff(cuts)).reshape(bottom - top, width)
-        yield slice(top, bottom), filled[:, 1:-1]
-
-
-def parts(count: int) -> Iterator[slice]:
-    """Slices of at most MOST_RUNS that cover `count` runs or links."""
-    return (slice(begin, min(begin + MOST_RUNS, count)) for begin in range(0, count, MOST_RUNS))
-
-
-def joined(pieces: Iterable[Indices], count: int) -> Generator[None, None, Indices]:
-    """Pieces with `count` items as a single array. It pauses, since the first use of memory takes long."""
-    whole = np.empty(count, np.intp)
-    place = 0
-    for piece in pieces:
-        whole[place : place + len(piece)] = piece
-        place += len(piece)
+    count = 0
+    for lines, band, edges in zip(bands(window), cut, found, strict=True):
+        runs = edges.reshape(-1, 2)
+        chosen = labels[count : count + len(runs)] == labels[seed]
+        count += len(runs)
+        # Measured: for large areas of few runs, repeating takes a twentieth of the time of a sum along lines.
+        sizes = np.diff(runs[chosen].reshape(-1), prepend=band.start * width, append=band.stop * width)
+        filled = np.repeat(np.arange(len(sizes)) % 2 == 1, sizes).reshape(-1, width)[:, 1:-1]
+        frame_buffer.fill(lines, word, enable, filled)
         yield
-    return whole
 
 
-def links(starts: Indices, ends: Indices, width: int, part: slice) -> Links:
-    """The links of the runs of a part to runs of the next line."""
-    first = np.searchsorted(ends, starts[part] + width, side="right")
-    last = np.searchsorted(starts, ends[part] + width, side="left")
+def links(edges: Indices, width: int) -> tuple[Indices, Indices]:
+    """The pairs of runs that touch, by the edges of all runs: the indices of the upper and the lower runs."""
+    starts, ends = edges.reshape(-1, 2).T.copy()
+    first = np.searchsorted(ends, starts + width, side="right")
+    last = np.searchsorted(starts, ends + width, side="left")
     counts = np.maximum(last - first, 0)
-    upper = np.repeat(np.arange(part.start, part.stop), counts)
+    upper = np.repeat(np.arange(len(starts)), counts)
     lower = np.arange(len(upper)) - np.repeat(np.cumsum(counts) - counts - first, counts)
     return upper, lower
 
 
-def connected(pairs: list[Links], count: int) -> Generator[None, None, Indices]:
-    """Label `count` runs, by union-find: runs that links connect get equal labels.
+def connected(pairs: list[tuple[Indices, Indices]], count: int) -> Generator[None, None, Indices]:
+    """Label `count` runs, by union-find: runs that the pairs (upper, lower) connect get equal labels.
 
     The generator yields None at each pause, and returns the labels.
     """
-    labels = yield from joined((np.arange(part.start, part.stop) for part in parts(count)), count)
-    while True:
-        # Link the larger root to the smaller one.
-        before = yield from joined((labels[part] for part in parts(count)), count)
+    labels = np.arange(count)
+    yield
+    while pairs:
+        # Link the larger label to the smaller one, then shorten every path to its root.
         for upper, lower in pairs:
-            upper, lower = before[upper], before[lower]
-            least = np.minimum(upper, lower)
-            np.minimum.at(labels, upper, least)
-            np.minimum.at(labels, lower, least)
+            above, below = labels[upper], labels[lower]
+            np.minimum.at(labels, np.maximum(above, below), np.minimum(above, below))
             yield
-        # Shorten every path to its root.
         is_short = False
         while not is_short:
             is_short = True
-            for part in parts(count):
-                shorter = labels[labels[part]]
-                is_short &= np.array_equal(shorter, labels[part])
-                labels[part] = shorter
+            for first in range(0, count, MOST_AT_ONCE):
+                part = labels[first : first + MOST_AT_ONCE]
+                shorter = labels[part]
+                is_short = is_short and bool((shorter == part).all())
+                part[...] = shorter
                 yield
         apart = []
         for upper, lower in pairs:
-            differ = labels[upper] != labels[lower]
-            if differ.any():
-                apart.append((upper[differ], lower[differ]))
+            different = labels[upper] != labels[lower]
+            if different.any():
+                apart.append((upper[different], lower[different]))
             yield
-        if not apart:
-            return labels
         pairs = apart
+    return labels

@@ -7,14 +7,14 @@ at the edge of the window. What is **not**: size factors above 16.
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Dots
-from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.memory.scan_orders import Point, ScanOrder, Window
+from ramtek_emu.memory.frame_buffer import FrameBuffer
+from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.memory.scan_orders import Point
 
 LARGEST_CELL: Final = 16
 """The largest number of elements, and of lines, of a cell.
@@ -22,59 +22,20 @@ LARGEST_CELL: Final = 16
 Assumed: a programmed character has 12 lines of 8 dots (LIN), so that four bits hold a dimension.
 """
 
-LINES_AT_ONCE: Final = 256
-PIXELS_AT_ONCE: Final = 1 << 20
-"""Limits: the lines of text, and their pixels, between two pauses; at most some 10 ms."""
 
-
-@dataclass(frozen=True, kw_only=True)
-class TextStyle:
-    """How text is drawn: cell, spacing, size factors, words, and whether only the dots are written."""
-
-    dimensions: tuple[int, int]
-    spacing: tuple[int, int]
-    size: tuple[int, int]
-    foreground: int
-    background: int
-    transparent: bool
-
-    @property
-    def dots_each(self) -> tuple[int, int]:
-        """The size of a cell along the scan and across it, in dots."""
-        along, across = self.dimensions
-        return max(1, min(along, LARGEST_CELL)), max(1, min(across, LARGEST_CELL))
-
-    @property
-    def cell(self) -> tuple[int, int]:
-        """The size of a cell along the scan and across it, in pixels."""
-        return self.dots_each[0] * self.size[0], self.dots_each[1] * self.size[1]
-
-    @property
-    def step(self) -> tuple[int, int]:
-        """The distances to the next cell and to the next line of text, in pixels."""
-        return self.cell[0] + self.spacing[0] * self.size[0], self.cell[1] + self.spacing[1] * self.size[1]
-
-    def dots(self, shapes: Dots) -> Dots:
-        """The shapes of characters, (n, lines, elements), scaled and side by side as [outer, inner] dots."""
-        along, across = self.dots_each
-        cells = shapes[:, :across, :along]
-        if cells.shape[1:] != (across, along):
-            part, cells = cells, np.zeros((len(shapes), across, along), np.bool_)
-            cells[:, : part.shape[1], : part.shape[2]] = part
-        if self.size != (1, 1):
-            cells = np.repeat(np.repeat(cells, self.size[1], axis=1), self.size[0], axis=2)
-        return beside(cells, self.step[0])
+def scaled(shapes: Dots, along: int, across: int, size: tuple[int, int]) -> Dots:
+    """The shapes of characters, (n, lines, elements), cut to cells of these dots; each dot is repeated."""
+    cells = shapes[:, :across, :along]
+    if cells.shape[1:] != (across, along):
+        part, cells = cells, np.zeros((len(shapes), across, along), np.bool_)
+        cells[:, : part.shape[1], : part.shape[2]] = part
+    return cells if size == (1, 1) else np.repeat(np.repeat(cells, size[1], axis=1), size[0], axis=2)
 
 
 def beside(cells: Dots, step: int) -> Dots:
     """Cells, (n, outer, inner), side by side at a distance of `step` pixels."""
     count, across, along = cells.shape
-    if count == 1:
-        single: Dots = cells[0]
-        return single
-    if step == along:
-        close: Dots = cells.transpose(1, 0, 2).reshape(across, count * along)
-        return close
+    step = step if count > 1 else along
     spaced = np.zeros((across, count, step), np.bool_)
     spaced[:, :, :along] = cells.transpose(1, 0, 2)
     side_by_side: Dots = spaced.reshape(across, count * step)
@@ -83,18 +44,20 @@ def beside(cells: Dots, step: int) -> Dots:
 
 def write_text(
     frame_buffer: FrameBuffer,
+    parameters: Parameters,
     shapes: Dots,
     codes: bytes,
-    style: TextStyle,
     *,
-    window: Window,
-    order: ScanOrder,
-    start: Point,
-    enable: WriteEnable,
+    foreground: int,
+    background: int,
+    transparent: bool,
 ) -> Generator[None, None, Point]:
-    """Write characters along the scan of the window from `start` on; returns the point of the next cell.
+    """Write characters along the scan of the window; returns the point of the next cell.
 
-    The generator yields None at pauses, after at least PIXELS_AT_ONCE pixels or LINES_AT_ONCE lines of text.
+    `shapes` are the dots of the 256 codes, (256, lines, elements). If `transparent`, only the dots are
+    written, in the foreground, and not the pixels between them.
+
+    The generator yields None between two lines of text.
 
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
     (the dots between are background); JPL (its driver sets a window from 1, 1 on and starts text anywhere,
@@ -105,47 +68,46 @@ def write_text(
     written from the start point on, even if that point lies outside the window. A cell larger than the window
     is written whole, since only the write window clips.
     """
+    window, order, start = parameters.window, parameters.order, parameters.start
     if window.is_empty:
         window = order.block_window(start, 0x10000, 0x10000)
-    (along, across), (step, line_step) = style.cell, style.step
+    # Compute the sizes of a cell and the distances of cells, along the scan and across it.
+    size = 1 + (parameters.scale & 0x0F), 1 + (parameters.scale >> 8 & 0x0F)
+    dots_along, dots_across = (min(max(1, dots), LARGEST_CELL) for dots in parameters.dimensions)
+    along, across = dots_along * size[0], dots_across * size[1]
+    step, line_step = along + parameters.spacing[0] * size[0], across + parameters.spacing[1] * size[1]
     corner = order.corner(window)
     width, height = order.inner_and_outer(window)
     inner, outer = order.steps(window, start)
-    # Count the cells of the first line, the cells of the next lines, and the lines.
-    first_cells = cells_from(inner, width, along, step)
-    line_cells = cells_from(0, width, along, step)
-    lines = max(1, cells_from(outer, height, across, line_step))
-    numbers = np.frombuffer(codes, np.uint8)[: first_cells + (lines - 1) * line_cells]
-    more = len(numbers) - first_cells
-    last = -(-more // line_cells) if more > 0 else 0
     # Draw the cells that reach into the memory, line by line.
-    memory = frame_buffer.window.intersection(enable.window)
+    memory = frame_buffer.window.intersection(parameters.write_window)
     low, low_line = order.steps(window, order.corner(memory))
     room, room_across = order.inner_and_outer(memory)
-    words = np.array((style.background, style.foreground), np.uint16)
-    lines_drawn = pixels = 0
-    seen_lines = reaching(outer, across, line_step, low_line, room_across)
-    for line in range(seen_lines.start, min(seen_lines.stop, last + 1)):
-        end = first_cells + line * line_cells
-        first, cells = (inner, numbers[:end]) if line == 0 else (0, numbers[end - line_cells : end])
-        seen = reaching(first, along, step, low, room)
-        cells = cells[seen.start : seen.stop]
-        if len(cells):
-            dots = style.dots(shapes[cells])
-            whole = beside(np.ones((len(cells), across, along), np.bool_), step) if step != along else None
-            written = dots if style.transparent else whole
-            place = order.stepped(corner, first + seen.start * step, outer + line * line_step)
-            frame_buffer.write_block(place, order, words.take(dots.view(np.uint8)), enable, written)
-            lines_drawn, pixels = lines_drawn + 1, pixels + dots.size
-            if lines_drawn >= LINES_AT_ONCE or pixels >= PIXELS_AT_ONCE:
-                lines_drawn = pixels = 0
-                yield
-    if not last:
-        return order.stepped(corner, inner + len(numbers) * step, outer)
-    return order.stepped(corner, (more - (last - 1) * line_cells) * step, outer + last * line_step)
+    words = np.array((background, foreground), np.uint16)
+    numbers = np.frombuffer(codes, np.uint8)
+    while True:
+        cells = numbers[: cells_within(inner, width, along, step)]
+        seen = reaching(inner, along, step, low, room)
+        shown = cells[seen.start : seen.stop]
+        if len(shown) and low_line - across < outer < low_line + room_across:
+            dots = beside(scaled(shapes[shown], dots_along, dots_across, size), step)
+            whole = beside(np.ones((len(shown), across, along), np.bool_), step) if step != along else None
+            place = order.stepped(corner, inner + seen.start * step, outer)
+            frame_buffer.write_block(
+                order.block_window(place, *dots.shape),
+                order,
+                words.take(dots.view(np.uint8)),
+                parameters.enable,
+                dots if transparent else whole,
+            )
+        numbers = numbers[len(cells) :]
+        if not len(numbers) or not cells_within(outer + line_step, height, across, line_step):
+            return order.stepped(corner, inner + len(cells) * step, outer)
+        inner, outer = 0, outer + line_step
+        yield
 
 
-def cells_from(first: int, extent: int, size: int, step: int) -> int:
+def cells_within(first: int, extent: int, size: int, step: int) -> int:
     """The number of cells, from `first` on at a distance of `step`, that end within an extent.
 
     A cell that begins at the near edge, or before it, counts even if it is larger than the extent.

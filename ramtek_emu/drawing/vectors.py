@@ -9,7 +9,7 @@ line, is drawn. Bresenham's algorithm leaves the choice open, and no source says
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -48,29 +48,22 @@ class Ink(NamedTuple):
         return (pattern >> bits & 1).astype(np.bool_)
 
 
-def write_linked(
-    frame_buffer: FrameBuffer, vertices: Numbers, ink: Ink, enable: WriteEnable
-) -> Iterator[int]:
-    """Draw lines from vertex to vertex of (n, 2) vertices, in slices as `write_lines` does.
-
-    Hardware: LONG REFLIB.C, an emulation (the texture continues from line to line of a call).
-    Assumed: it starts again with the next instruction; a vertex between two lines takes one bit.
-    """
-    return write_lines(frame_buffer, vertices[:-1], vertices[1:], ink, enable, runs_on=True)
-
-
 def write_lines(
     frame_buffer: FrameBuffer,
     starts: Numbers,
     ends: Numbers,
     ink: Ink,
     enable: WriteEnable,
-    runs_on: bool = False,
+    linked: bool = False,
 ) -> Iterator[int]:
     """Draw lines from the (n, 2) starts to the (n, 2) ends, in slices.
 
     After a slice the iterator yields how many lines are drawn; it draws the next slice when it is asked for
-    more. A few lines are drawn in a single step.
+    more. A few lines are drawn in a single step. With `linked`, each line starts where the line before ends.
+
+    Hardware: LONG REFLIB.C, an emulation (the texture continues from line to line of a call).
+    Assumed: it continues in linked lines alone, and starts again with the next instruction; a vertex between
+    two lines takes one bit.
     """
     inside = frame_buffer.window.intersection(enable.window)
     if inside.is_empty:
@@ -85,7 +78,7 @@ def write_lines(
         if ink.is_solid:
             frame_buffer.write_points(elements, lines, ink.word, enable)
         else:
-            ones = ink.is_one(numbers + before[which] if runs_on else numbers)
+            ones = ink.is_one(numbers + before[which] if linked else numbers)
             if ink.transparent:
                 frame_buffer.write_points(elements[ones], lines[ones], ink.word, enable)
             else:
@@ -127,15 +120,6 @@ def write_line(
         frame_buffer.write_points(along, aside, word, enable)
 
 
-def _are_inside(ends: Numbers, limits: Sequence[tuple[int, int]]) -> bool:
-    """Whether all (n, 2) ends are within the limits of elements and lines."""
-    least, most = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
-    return all(
-        low <= lowest and highest <= high
-        for (low, high), lowest, highest in zip(limits, least, most, strict=True)
-    )
-
-
 def points(
     starts: Numbers, ends: Numbers, inside: Window
 ) -> Iterator[tuple[Numbers, Numbers, Numbers, Indices]]:
@@ -147,7 +131,8 @@ def points(
     doubled, divisor, direction = 2 * size, 2 * np.maximum(length, 1), np.sign(offset)
     first, last = np.zeros_like(length), length
     limits: tuple[tuple[int, int], ...] = (inside.left, inside.right), (inside.top, inside.bottom)
-    if len(starts) and _are_inside(np.concatenate((starts, ends)), limits):
+    places = np.concatenate((starts, ends))
+    if len(starts) and all(inside.holds(Point(*corner)) for corner in (places.min(0), places.max(0))):
         # Most hosts clip their lines, and this test takes a fifth of the time of clipping.
         limits = ()
     for axis, (low, high) in enumerate(limits):
@@ -169,7 +154,7 @@ def points(
         numbers += first[which]
         over = divisor[which]
         half = over >> 1
-        places = []
+        pair = []
         for axis in (0, 1):
             # Compute in place, because each temporary array costs page faults.
             place = doubled[which, axis]
@@ -178,8 +163,8 @@ def points(
             place //= over
             place *= direction[which, axis]
             place += starts[which, axis]
-            places.append(place)
-        yield places[0], places[1], numbers, which
+            pair.append(place)
+        yield pair[0], pair[1], numbers, which
 
 
 MOST_POINTS: Final = 1 << 15
@@ -199,9 +184,6 @@ def slices(counts: Numbers) -> Iterator[slice]:
     """
     done = counts.cumsum()
     row = before = 0
-    if len(counts) and done[-1] <= MOST_POINTS:
-        yield slice(0, len(counts))
-        return
     while row < len(counts):
         until = max(row + 1, int(np.searchsorted(done, before + MOST_POINTS, side="right")))
         yield slice(row, until)

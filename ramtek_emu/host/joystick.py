@@ -12,11 +12,9 @@ after a #, are ignored. A line with anything else does nothing, and an error mes
 
 from __future__ import annotations
 
-import errno
 import os
 import queue
 import re
-import stat
 import sys
 import threading
 from collections.abc import Callable
@@ -31,7 +29,7 @@ MOST_BYTES: Final = 1 << 12
 """Limit: the most bytes of a line. The rest of a longer line is another line."""
 MOST_LINES: Final = 64
 """Limit: the most lines that wait; while they do, no more are read."""
-NUMBER: Final = re.compile(r"[+-]?[0-9]{1,6}")
+TWO_NUMBERS: Final = re.compile(r"[+-]?[0-9]{1,6} [+-]?[0-9]{1,6}")
 
 Action = Callable[[], object]
 
@@ -48,43 +46,34 @@ def actions(line: str, joystick: Joystick, reset: Action) -> list[Action]:
                 asked.append(reset)
             case ["track", "on" | "off" as switch, *rest]:
                 asked.append(partial(setattr, joystick, "track", switch == "on"))
-            case ["cursor" | "by" as kind, element, line_number, *rest] if _are_numbers(element, line_number):
+            case ["cursor" | "by" as kind, x, y, *rest] if TWO_NUMBERS.fullmatch(f"{x} {y}"):
                 move = joystick.move_to if kind == "cursor" else joystick.move_by
-                asked.append(partial(move, int(element), int(line_number)))
+                asked.append(partial(move, int(x), int(y)))
             case _:
-                shown = line if len(line) <= 60 else f"{line[:60]}..."
                 raise ValueError(
                     "a joystick line must hold cursor X Y, by X Y, enter, track on, track off or reset, "
-                    f"not {shown!r}; write it so"
+                    f"not {line[:60]!r}; write it so"
                 )
         words = rest
     return asked
 
 
-def _are_numbers(*words: str) -> bool:
-    return all(NUMBER.fullmatch(word) for word in words)
-
-
 class JoystickLines:
     """Lines from a file, a FIFO or stdin. A thread reads them; `obey` acts on them when called."""
 
-    def __init__(self, path: str, joystick: Joystick, reset: Action, answer: Callable[[str], object]) -> None:
+    def __init__(self, path: str, answer: Callable[[str], object]) -> None:
         """Begin to read; `answer` gets a sentence for a bad line. MissingInputError if there is no file."""
-        self._joystick, self._reset, self._answer = joystick, reset, answer
+        self._answer = answer
         self._lines: queue.Queue[str] = queue.Queue(MOST_LINES)
         self._number = 0
         threading.Thread(target=self._read, args=(opened(path),), daemon=True).start()
 
-    def obey(self) -> None:
+    def obey(self, joystick: Joystick, reset: Action) -> None:
         """Do the actions of the waiting lines."""
-        for _ in range(MOST_LINES):
-            try:
-                line = self._lines.get_nowait()
-            except queue.Empty:
-                return
+        for _ in range(self._lines.qsize()):
             self._number += 1
             try:
-                for action in actions(line, self._joystick, self._reset):
+                for action in actions(self._lines.get(), joystick, reset):
                     action()
             except ValueError as refusal:
                 self._answer(f"joystick, line {self._number}: {refusal}")
@@ -98,15 +87,10 @@ class JoystickLines:
 def opened(path: str) -> int:
     """The descriptor of the opened file, stdin for `-`; MissingInputError if it cannot be read."""
     try:
-        if path == "-":
-            if sys.stdin is None:
-                raise OSError(errno.EBADF, "stdin is closed")
+        if path == "-" and sys.stdin is not None:
             return os.dup(sys.stdin.fileno())
-        kind = os.stat(path).st_mode
-        if stat.S_ISDIR(kind):
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        # Open a FIFO for writing, too: then it does not end when its last writer leaves.
-        return os.open(path, os.O_RDWR if stat.S_ISFIFO(kind) else os.O_RDONLY)
+        # A FIFO that is opened for writing, too, does not end when its last writer leaves.
+        return os.open(path, os.O_RDWR)
     except (OSError, ValueError) as cause:
         raise MissingInputError(
             f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} "

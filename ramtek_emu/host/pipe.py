@@ -1,163 +1,111 @@
 """A display on two pipes: a pipe for the words of the host, and a pipe for the replies.
 
-`serve_pipe` blocks until the host sends something, as a command does. `PolledPipe` never blocks, so that a
-window can be drawn in between: two threads read and write the pipes, and only the caller uses the display.
-`PacedReader` reads a recorded stream at the pace of a host that loads the table at a given rate.
-`StreamFields` are the fields of a recorded stream, for a film.
+`PipeServer` serves the host as other servers do. `paced` reads a recorded stream at the pace of a host that
+loads the table at a given rate. `stream_fields` are the fields of a recorded stream, for a film.
 
-A host that stops reading its replies loses them, but its words are still executed (Assumed: a host that draws
-and leaves wants its picture). The session ends with the input; an unfinished instruction and an odd last byte
-are dropped.
+The session ends with the input; an unfinished instruction and an odd last byte are dropped.
 """
 
 from __future__ import annotations
 
 import itertools
-import queue
+import math
+import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 
 import numpy as np
 
 from ramtek_emu.arrays import Colors
 from ramtek_emu.configuration import Configuration
-from ramtek_emu.host.server import READ_BYTES, HostSession
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.host.server import READ_BYTES, Client, HostSession, Record, Server
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 
 Read = Callable[[int], bytes]
+"""A function that waits for bytes, and returns at most so many; none at the end."""
 Write = Callable[[bytes], object]
+"""A function that writes all of the bytes; ConnectionError if the pipe has no reader."""
 
 
-def serve_pipe(
-    session: HostSession, read: Read, write: Write | None, ends: Callable[[], bool] = lambda: False
-) -> None:
-    """Execute the bytes that `read` returns until it returns none; pass replies to `write` at once.
+class PipeServer(Server):
+    """A display that serves a single host, which is connected by two pipes.
 
-    `read(most)` returns the available bytes, at most `most` of them. Without `write`, replies are dropped.
-    When `ends()` is true, the rest of the words is not executed.
+    `serve` waits for the host, as a command does. `step` does not, as with other servers: two threads copy
+    the bytes of the pipes to a socket and from it, and the display serves the other end of the socket.
+    Without `write`, replies are dropped.
     """
-    while data := read(READ_BYTES):
-        for reply in session.feed(data):
-            if ends():
-                return
-            if reply and write is not None:
-                try:
-                    write(reply)
-                except ConnectionError:
-                    # The host has closed its end.
-                    write = None
 
+    def __init__(
+        self, display: Ramtek9300, read: Read, write: Write = lambda _: None, record: Record | None = None
+    ) -> None:
+        super().__init__(display, None, "", math.inf, record)
+        self._read, self._write = read, write
 
-class PolledPipe:
-    """Serves pipes in slices of time; `ended` becomes true when the host has closed its end."""
+    def serve(self, ends: Callable[[], bool]) -> None:
+        """Execute the host's words until it leaves or `ends()` is true, and write the replies at once."""
+        while data := self._read(READ_BYTES):
+            for reply in self.session.feed(data):
+                if ends():
+                    return
+                with suppress(ConnectionError):
+                    self._write(reply)
 
-    def __init__(self, session: HostSession, read: Read, write: Write | None = None) -> None:
-        self.session = session
-        self.ended = False
-        self._data: queue.Queue[bytes] = queue.Queue(4)
-        self._replies: queue.Queue[bytes] = queue.Queue(64)
-        self._pending: Iterator[bytes] = iter(())
-        self._reply = b""
-        self._write = write
-        # How many bytes were read, and how many of them were passed to the session.
-        self._read_bytes = self._fed_bytes = 0
-        threading.Thread(target=self._fill, args=(read,), daemon=True).start()
-        if write is not None:
-            threading.Thread(target=self._drain, daemon=True).start()
+    def finish(self, ends: Callable[[], bool]) -> None:
+        """Wait until the replies to a host that has left are written, or until `ends()` is true."""
+        while self._replying.is_alive() and not ends():
+            self._replying.join(0.1)
 
-    @property
-    def has_replied(self) -> bool:
-        """Whether all replies were written, or the host no longer reads them."""
-        return self._write is None or not (self._reply or self._replies.unfinished_tasks)
-
-    @property
-    def unexecuted(self) -> int:
-        """The number of words that were read and are not executed."""
-        return self.session.unexecuted + (self._read_bytes - self._fed_bytes) // 2
-
-    def step(self) -> bool:
-        """Execute a piece of words; returns False if none has arrived, or if the last reply must wait."""
-        if self._reply:
-            try:
-                self._replies.put_nowait(self._reply)
-            except queue.Full:
-                return False
-            self._reply = b""
-        reply = next(self._pending, None)
-        if reply is None:
-            try:
-                data = self._data.get_nowait()
-            except queue.Empty:
-                return False
-            if not data:
-                self.ended = True
-                return False
-            self._fed_bytes += len(data)
-            self._pending = self.session.feed(data)
-        elif self._write is not None:
-            self._reply = reply
+    def _accept(self, seconds: float) -> bool:
+        if self.served:
+            return False
+        served, self._copied = socket.socketpair()
+        self._client = Client(served, self.session, self.idle_seconds)
+        self._replying = threading.Thread(target=self._copy_replies, daemon=True)
+        self._replying.start()
+        threading.Thread(target=self._copy_words, daemon=True).start()
         return True
 
-    def serve_for(self, seconds: float) -> None:
-        """Serve for up to `seconds`, or until no work is left, without blocking."""
-        end = time.monotonic() + seconds
-        while not self.ended and self.step() and time.monotonic() < end:
-            pass
+    def _leave(self) -> None:
+        """Leave the unfinished instruction and the odd byte in the session, so that they can be reported."""
 
-    def _fill(self, read: Read) -> None:
-        data = b"-"
-        while data:
-            try:
-                data = read(READ_BYTES)
-            except (OSError, ValueError):
-                data = b""
-            self._read_bytes += len(data)
-            self._data.put(data)
+    def _copy_words(self) -> None:
+        with suppress(OSError):
+            while data := self._read(READ_BYTES):
+                self._copied.sendall(data)
+            self._copied.shutdown(socket.SHUT_WR)
 
-    def _drain(self) -> None:
-        write = self._write
-        while True:
-            reply = self._replies.get()
-            if write is not None:
-                try:
-                    write(reply)
-                except (OSError, ValueError):
-                    write = None
-            self._replies.task_done()
+    def _copy_replies(self) -> None:
+        with self._copied, suppress(OSError):
+            while data := self._copied.recv(READ_BYTES):
+                with suppress(ConnectionError):
+                    self._write(data)
 
 
-class CutReader:
+def stream_pieces(
+    read: Read, configuration: Configuration, is_cut: Callable[[int], bool]
+) -> Iterator[tuple[bytes, bool]]:
     """The pieces of a stream, which is cut after the instructions that `is_cut` chooses.
 
-    `is_cut` is called with the opcode of each instruction, in order. A row of illegal words is an
-    instruction, as in a listing; it ends where the reads of the stream cut it.
+    Yields the bytes of each piece, and whether it ends with a chosen instruction. `is_cut` is called with the
+    opcode of each instruction, in order. A row of illegal words is an instruction, as in a listing; it ends
+    where the reads of the stream cut it.
     """
-
-    def __init__(self, read: Read, configuration: Configuration, is_cut: Callable[[int], bool]) -> None:
-        self.waiting = 0
-        """The number of bytes that were read and not yielded."""
-        self._read = read
-        self._is_cut = is_cut
-        self._decoder = Decoder(configuration)
-
-    def __iter__(self) -> Iterator[tuple[bytes, bool]]:
-        """Yields the bytes of each piece, and whether it ends with a chosen instruction."""
-        odd_byte = b""
-        while data := self._read(READ_BYTES):
-            # A word may have begun in the bytes before, and an instruction in the words before.
-            whole, odd, begun = odd_byte + data, len(odd_byte), 0
-            odd_byte = whole[len(whole) & ~1 :]
-            for words in self._decoder.split(np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16)):
-                if not self._decoder.is_within_row and self._is_cut(words.item(0) >> 8):
-                    end = 2 * self._decoder.used - odd
-                    self.waiting = len(data) - end
-                    yield data[begun:end], True
-                    begun = end
-            if begun < len(data):
-                self.waiting = 0
-                yield data[begun:], False
+    decoder, odd_byte = Decoder(configuration), b""
+    while data := read(READ_BYTES):
+        # A word may have begun in the bytes before, and an instruction in the words before.
+        whole, odd, begun = odd_byte + data, len(odd_byte), 0
+        odd_byte = whole[len(whole) & ~1 :]
+        for words in decoder.split(np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16)):
+            if not decoder.is_within_row and is_cut(words.item(0) >> 8):
+                end = 2 * decoder.used - odd
+                yield data[begun:end], True
+                begun = end
+        if begun < len(data):
+            yield data[begun:], False
 
 
 def is_load(opcode: int) -> bool:
@@ -171,8 +119,10 @@ def every(count: int) -> Callable[[int], bool]:
     return lambda _: next(numbers) % count == 0
 
 
-class PacedReader:
-    """Reads a stream as the given `read` does, but waits before every load of the lookup table.
+def paced(read: Read, loads_per_second: int, configuration: Configuration) -> Read:
+    """A function that reads as `read` does, but waits before every load of the lookup table.
+
+    Each call returns a piece of the stream. After a late load, the next load still waits its full time.
 
     What is modeled: only the pace of the host. A stream has no times: words that a host sent during a minute
     are executed in a moment, and an animation of table loads would be over at once. What is **not**: the
@@ -180,73 +130,35 @@ class PacedReader:
 
     Hardware: none: no source gives the rate of fields, or of transfers (NCAR waits for the vertical retrace
     before a load, so a field had at most one load).
-
-    Call it from a thread that may block, such as `PolledPipe`'s.
     """
 
-    def __init__(
-        self,
-        read: Read,
-        loads_per_second: int,
-        configuration: Configuration,
-        clock: Callable[[], float] = time.monotonic,
-        sleep: Callable[[float], object] = time.sleep,
-    ) -> None:
-        self._pieces = iter(CutReader(read, configuration, is_load))
-        self._seconds = 1 / loads_per_second
-        self._clock = clock
-        self._sleep = sleep
-        self._due = clock()
+    def waited_for() -> Iterator[bytes]:
+        due = time.monotonic()
+        for data, ends_in_load in stream_pieces(read, configuration, is_load):
+            if ends_in_load:
+                time.sleep(max(0.0, due - time.monotonic()))
+                due = max(due, time.monotonic()) + 1 / loads_per_second
+            yield data
 
-    def __call__(self, _: int) -> bytes:
-        """The next bytes of the stream, none at its end. Waits until a load is due.
-
-        After a late load, the next load still waits its full time.
-        """
-        data, ends_in_load = next(self._pieces, (b"", False))
-        if ends_in_load:
-            now = self._clock()
-            if now < self._due:
-                self._sleep(self._due - now)
-            self._due = max(self._due, now) + self._seconds
-        return data
+    left = waited_for()
+    return lambda _: next(left, b"")
 
 
-class StreamFields:
-    """The fields of a stream after each cut and at its end. The stream is executed when fields are taken.
+def stream_fields(
+    session: HostSession, cut: Iterator[tuple[bytes, bool]], ends: Callable[[], bool] = lambda: False
+) -> Iterator[Colors]:
+    """The fields of a stream after each cut, (lines, elements, 3) uint8, and at its end, if it changed.
 
-    If the field at the end equals the field before, it is left out. There are at most `most` fields: the
-    fields after the first cuts, and the field at the end. When `ends()` is true, the rest of the words is not
-    executed. Replies are dropped.
+    `cut` are its `stream_pieces`. The stream is executed when fields are taken. When `ends()` is true, the
+    rest of the words is not executed. Replies are dropped.
     """
-
-    def __init__(
-        self, session: HostSession, read: CutReader, most: int, ends: Callable[[], bool] = lambda: False
-    ) -> None:
-        self.count = 0
-        """The number of fields until now."""
-        self.left_out = False
-        """Whether fields before the last field are left out, because of `most`."""
-        self._session = session
-        self._read = read
-        self._most = most
-        self._ends = ends
-
-    def __iter__(self) -> Iterator[Colors]:
-        """Execute the rest of the stream, and yield its fields, (lines, elements, 3) uint8."""
-        display = self._session.display
-        last: Colors | None = None
-        is_skipped = False
-        for data, is_cut in self._read:
-            if any(self._ends() for _ in self._session.feed(data)):
-                break
-            self.left_out |= is_skipped
-            is_skipped = is_cut and self.count == self._most - 1
-            if is_cut and not is_skipped:
-                last = display.field()
-                self.count += 1
-                yield last
-        field = display.field()
-        if last is None or not np.array_equal(field, last):
-            self.count += 1
-            yield field
+    last: Colors | None = None
+    for data, is_cut in cut:
+        if any(ends() for _ in session.feed(data)):
+            break
+        if is_cut:
+            last = session.display.field()
+            yield last
+    field = session.display.field()
+    if last is None or not np.array_equal(field, last):
+        yield field

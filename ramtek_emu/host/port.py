@@ -14,11 +14,10 @@ import re
 import selectors
 import socket
 import struct
-import sys
 import time
 from contextlib import suppress
 from types import TracebackType
-from typing import BinaryIO, Final, Protocol, TypeVar
+from typing import BinaryIO, Final, Protocol, Self
 
 import numpy as np
 
@@ -67,11 +66,22 @@ PACKET_BYTES: Final = 1 << 19
 
 
 def prepared(connected: socket.socket) -> socket.socket:
-    """The socket, set not to wait and, with TCP, to send small pieces at once; OSError if it is lost."""
+    """The socket, set not to wait and, with TCP, to send small pieces at once."""
     connected.setblocking(False)
-    if not keeps_writes(connected):
+    # A Unix socket has no such option, and on some systems no lost connection has it.
+    with suppress(OSError):
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     return connected
+
+
+def ready(connected: socket.socket, wanted: int, seconds: float) -> int:
+    """The events of those wanted for which a socket is ready, waiting up to `seconds` for some."""
+    if not wanted:
+        return 0
+    with selectors.DefaultSelector() as selector:
+        selector.register(connected, wanted)
+        found = selector.select(seconds)
+    return found[0][1] if found else 0
 
 
 def keeps_writes(connected: socket.socket) -> bool:
@@ -79,10 +89,10 @@ def keeps_writes(connected: socket.socket) -> bool:
     return connected.type != socket.SOCK_STREAM
 
 
-def read_socket(connected: socket.socket, most: int) -> bytes | None:
+def read_socket(connected: socket.socket, most: int, flags: int = 0) -> bytes | None:
     """The next packet, or at most `most` bytes of a stream; b"" at the end, None if nothing has arrived."""
     with suppress(BlockingIOError):
-        return connected.recv(PACKET_BYTES if keeps_writes(connected) else most)
+        return connected.recv(PACKET_BYTES if keeps_writes(connected) else most, flags)
     return None
 
 
@@ -94,36 +104,10 @@ def write_socket(connected: socket.socket, data: bytes | memoryview) -> int:
 
 
 def break_off(connected: socket.socket) -> None:
-    """Make closing a TCP connection look like a loss to the other side. Do nothing on a Unix socket."""
-    if not keeps_writes(connected):
-        # On some systems, a lost connection accepts no options.
-        with suppress(OSError):
-            connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-
-
-def waiting_bytes(file: socket.socket | int) -> int:
-    """The number of bytes that have arrived at a socket or a pipe, or that are left in a file.
-
-    0 on systems that do not tell.
-    """
-    if sys.platform != "linux":
-        return 0
-    import fcntl
-    import termios
-
-    try:
-        answer = fcntl.ioctl(file, termios.FIONREAD, bytes(struct.calcsize("i")))
-    except OSError:
-        return 0
-    return int.from_bytes(answer, sys.byteorder)
-
-
-MOST_SECONDS: Final = 1_000_000
-"""The longest timeout. Limit: the system cannot wait for much longer at once."""
-HURRIED_SECONDS: Final = 0.25
-"""The longest wait for the display when an error or a signal closes the port. Limit: a hang would hide it."""
-
-Self = TypeVar("Self", bound="SocketPort")
+    """Make closing a TCP connection look like a loss to the other side. It changes no Unix socket."""
+    # On some systems, a lost connection accepts no options.
+    with suppress(OSError):
+        connected.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
 class SocketPort:
@@ -151,9 +135,7 @@ class SocketPort:
 
     def send(self, words: Words) -> None:
         """Send 16-bit words; PortError if the connection is lost."""
-        data = memoryview(checked_stream(words).astype("<u2", copy=False).tobytes())
-        while data:
-            data = data[self._send_some(data[: self.at_once]) :]
+        self._send(checked_stream(words).astype("<u2", copy=False).tobytes())
 
     def receive(self, count: int) -> Words:
         """The next `count` words, uint16; ReplyError at the timeout, PortError if the connection is lost."""
@@ -164,13 +146,13 @@ class SocketPort:
             )
         deadline = time.monotonic() + self.timeout
         while len(self._received) < 2 * count:
-            if not self._ready(max(0.0, deadline - time.monotonic())):
+            self._exchange(deadline)
+            if time.monotonic() >= deadline and len(self._received) < 2 * count:
                 raise ReplyError(
                     f"the words received must come within {self.timeout:g} seconds, not {count} of which "
                     f"{len(self._received) // 2} came; send an instruction that reads them first, "
                     "or wait until no other host is served"
                 )
-            self._take()
         words = np.frombuffer(bytes(self._received[: 2 * count]), "<u2").astype(np.uint16)
         del self._received[: 2 * count]
         return words
@@ -181,9 +163,26 @@ class SocketPort:
         Unread replies are dropped. PortError if the display turned this host away, was lost, or does not
         execute all words within `timeout` seconds.
         """
-        self._close(self.timeout)
+        if self._is_closed:
+            return
+        deadline = time.monotonic() + self.timeout
+        with self.socket:
+            self._exchange(time.monotonic())
+            try:
+                self.socket.shutdown(socket.SHUT_WR)
+                while (left := deadline - time.monotonic()) > 0 and ready(
+                    self.socket, selectors.EVENT_READ, left
+                ):
+                    if read_socket(self.socket, self.at_once) == b"":
+                        return
+            except OSError as cause:
+                raise self._gone(cause) from cause
+        raise PortError(
+            f"a display must execute all words within {self.timeout:g} seconds, and "
+            f"{self.address} has not: it may be serving another host first; give a longer timeout"
+        )
 
-    def __enter__(self: Self) -> Self:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -193,85 +192,39 @@ class SocketPort:
             self.close()
         else:
             # The error that is being raised says more than an error of closing.
-            with suppress(PortError):
-                self._close(min(self.timeout, HURRIED_SECONDS))
+            self.socket.close()
 
-    def _close(self, seconds: float) -> None:
-        """End our side, and read until the display ends; PortError if it ended first, or does not end."""
-        if self._is_closed:
-            return
-        deadline = time.monotonic() + seconds
-        with self.socket:
-            while self._take() and time.monotonic() < deadline:
-                self._received.clear()
-            try:
-                self.socket.shutdown(socket.SHUT_WR)
-            except OSError as cause:
-                raise self._gone(reason_of(cause)) from cause
-            while (left := deadline - time.monotonic()) > 0:
-                if self._ready(left) and self._read() == b"":
-                    return
-        raise PortError(
-            f"a display must execute all words within {seconds:g} seconds, and "
-            f"{self.address} has not: it may be serving another host first; give a longer timeout"
-        )
-
-    def _ready(self, seconds: float, writing: bool = False) -> int:
-        """The events of the socket, waiting up to `seconds` for some: reading and, if asked for, writing."""
-        if self._is_closed:
-            raise PortError(f"a port must be open, not closed ({self.address}); open it again")
-        with selectors.DefaultSelector() as selector:
-            wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if writing else 0)
-            selector.register(self.socket, wanted)
-            ready = selector.select(seconds)
-        return ready[0][1] if ready else 0
-
-    def _send_some(self, data: bytes | memoryview) -> int:
-        """Send bytes when the display takes them, and return their number. Replies are read meanwhile."""
-        deadline = time.monotonic() + self.timeout
-        while True:
-            events = self._ready(max(0.0, deadline - time.monotonic()), writing=True)
-            if events & selectors.EVENT_READ:
-                self._take()
-            try:
-                if events & selectors.EVENT_WRITE and (count := write_socket(self.socket, data)):
-                    return count
-            except OSError as cause:
-                raise self._gone(reason_of(cause)) from cause
-            if time.monotonic() >= deadline:
+    def _send(self, data: bytes) -> None:
+        left, deadline = memoryview(data), time.monotonic() + self.timeout
+        while left:
+            if sent := self._exchange(deadline, left[: self.at_once]):
+                left, deadline = left[sent:], time.monotonic() + self.timeout
+            elif time.monotonic() >= deadline:
                 raise PortError(
                     f"a display must take words within {self.timeout:g} seconds, and {self.address} does "
                     "not; read its replies, wait until no other host is served, or start it again"
                 )
 
-    def _take(self) -> bool:
-        """Read replies; returns whether any have arrived. PortError if the display has ended."""
-        data = self._read()
-        if data == b"":
-            raise self._gone("it closed the connection")
-        self._received += data or b""
-        return data is not None
-
-    def _read(self) -> bytes | None:
+    def _exchange(self, deadline: float, data: bytes | memoryview = b"") -> int:
+        """Wait until the display sends replies or takes bytes of the data, and return how many it took."""
+        if self._is_closed:
+            raise PortError(f"a port must be open, not closed ({self.address}); open it again")
+        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if data else 0)
+        events = ready(self.socket, wanted, max(0.0, deadline - time.monotonic()))
         try:
-            return read_socket(self.socket, self.at_once)
+            if events & selectors.EVENT_READ:
+                replies = read_socket(self.socket, self.at_once)
+                if replies == b"":
+                    raise ConnectionError("it closed the connection")
+                self._received += replies or b""
+            return write_socket(self.socket, data) if events & selectors.EVENT_WRITE else 0
         except OSError as cause:
-            raise self._gone(reason_of(cause)) from cause
+            raise self._gone(cause) from cause
 
-    def _gone(self, reason: str) -> PortError:
+    def _gone(self, cause: OSError) -> PortError:
         return PortError(
-            f"a display must stay at {self.address}, and it left ({reason}); connect again later"
+            f"a display must stay at {self.address}, and it left ({reason_of(cause)}); connect again later"
         )
-
-
-def checked_timeout(seconds: object) -> float:
-    """The timeout of a port as a float; PortError if it is not a time in seconds."""
-    if not isinstance(seconds, int | float) or isinstance(seconds, bool) or not 0 < seconds <= MOST_SECONDS:
-        raise PortError(
-            f"a timeout must be a number of seconds from 0 to {MOST_SECONDS:,}, not {seconds!r}; "
-            "choose another"
-        )
-    return float(seconds)
 
 
 class TcpPort(SocketPort):
@@ -286,10 +239,9 @@ class TcpPort(SocketPort):
 
     def __init__(self, address: str, timeout: float = 30.0) -> None:
         host, port = host_and_port(address)
-        timeout = checked_timeout(timeout)
         try:
             connected = socket.create_connection((host, port), timeout)
-        except (OSError, UnicodeError) as cause:
+        except (OSError, ValueError, OverflowError) as cause:
             raise PortError(
                 f"a display must listen at {address}, and it is not reached ({reason_of(cause)}); "
                 "start `ramtek serve` there"
@@ -323,34 +275,26 @@ class UnixPort(SocketPort):
     at_once = 1 << 16
 
     def __init__(self, path: str | os.PathLike[str], timeout: float = 30.0) -> None:
-        address, timeout = os.fspath(path), checked_timeout(timeout)
+        address = os.fspath(path)
         super().__init__(address, connected_socket(address, timeout), timeout)
 
     def write(self, data: bytes) -> None:
-        """Send up to 65,536 bytes as one write, as a program of the time did.
+        """Send bytes as one write of a program of the time: a last odd byte is dropped.
 
-        PortError if the connection is lost, or if there are more bytes.
+        More than 65,536 bytes are sent in several packets. PortError if the connection is lost.
         """
-        if len(data) > self.at_once:
-            raise PortError(
-                f"a write must be at most {self.at_once} bytes, not {len(data)}; divide it at an even place"
-            )
-        if data:
-            self._send_some(data)
+        self._send(data)
 
 
 def packet_socket() -> socket.socket:
     """A Unix socket that keeps the boundaries of writes; PortError where the system has none."""
-    reason = "no SOCK_SEQPACKET"
-    if sys.platform != "win32":
-        try:
-            return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        except (AttributeError, OSError) as cause:
-            reason = (getattr(cause, "strerror", None) or reason).lower()
-    raise PortError(
-        "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
-        f"({reason}); use TCP or a pipe"
-    )
+    try:
+        return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    except (AttributeError, OSError) as cause:
+        raise PortError(
+            "a system must have Unix sockets that keep the boundaries of writes (SOCK_SEQPACKET), and this "
+            "one does not; use TCP or a pipe"
+        ) from cause
 
 
 LISTEN_SECONDS: Final = 1.0

@@ -14,26 +14,24 @@ words are executed first. Then its unfinished instruction and its unread replies
 stay as they are, and the next host is served. Hosts that connect meanwhile wait in line: the system stores
 the connections of 128 hosts with the words they have sent; further hosts try again until there is a place.
 
-Limit: a host is disconnected if nothing is sent or received for `idle_seconds`, or if an instruction stays
-incomplete for `partial_seconds`. The clock of a host starts when its turn comes, so that waiting in line
-costs nothing, and a silent host holds up the line for `idle_seconds` at most. While REPLY_BYTES of replies
-wait for the host, nothing more is read from it.
+Limit: a host is disconnected if nothing is sent or received for `idle_seconds`. The clock of a host starts
+when its turn comes, so that waiting in line costs nothing, and a silent host holds up the line for
+`idle_seconds` at most. While REPLY_BYTES of replies wait for the host, nothing more is read from it.
 """
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
 import selectors
 import socket
 import stat
-import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from types import TracebackType
-from typing import Final, TypeVar
+from typing import Final, Self
 
 import numpy as np
 
@@ -47,7 +45,7 @@ from ramtek_emu.host.port import (
     packet_socket,
     prepared,
     read_socket,
-    waiting_bytes,
+    ready,
     write_socket,
 )
 from ramtek_emu.instruction_set.instruction import NO_WORDS
@@ -73,14 +71,14 @@ class HostSession:
 
     def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
         self.display = display
-        self.allowed: int | None = None
-        """How many more instructions may be executed, for a program that stops its hosts; None for all."""
+        self.is_stopped = False
+        """Whether a program lets its hosts wait: nothing is executed, and replies are still passed on."""
         self.is_within = False
         """Whether the first instruction that is left is half executed."""
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
         self._left = NO_WORDS
-        self._record_bytes = record
+        self.record = record
         self.leave()
 
     @property
@@ -91,11 +89,6 @@ class HostSession:
         count once all words before them are executed.
         """
         return len(self._left) - self.display.decoder.pending_words
-
-    @property
-    def unfinished(self) -> bool:
-        """Whether a word or an instruction is incomplete."""
-        return bool(self.odd_byte) or self.display.decoder.pending_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
         """Pass bytes of the host to the display, and yield the replies, or no bytes, at every pause.
@@ -110,7 +103,7 @@ class HostSession:
 
     def _execute(self, words: Words) -> Iterator[bytes]:
         processor, clock = self.display.processor, time.perf_counter
-        while self.unexecuted and self.allowed == 0:
+        while self.unexecuted and self.is_stopped:
             yield b""
         steps = self.display.send_stepwise(words)
         place = 0
@@ -118,11 +111,9 @@ class HostSession:
             due, before = clock() + SLICE_SECONDS, place
             for step in steps:
                 before, place = place, step
-                if self.allowed is not None or clock() >= due or processor.waiting >= REPLY_PIECE:
+                if self.is_stopped or clock() >= due or processor.waiting >= REPLY_PIECE:
                     # A pause within an instruction has the number of the pause before.
                     self.is_within = place == before
-                    if self.allowed and not self.is_within:
-                        self.allowed -= 1
                     break
             else:
                 self.is_within = False
@@ -131,7 +122,7 @@ class HostSession:
                 self._left = words[place:]
             was_within, resets = self.is_within, self.display.resets
             yield self._reply()
-            while processor.waiting or (self.unexecuted and self.allowed == 0):
+            while processor.waiting or (self.unexecuted and self.is_stopped):
                 yield self._reply()
             if was_within and self.display.resets != resets:
                 # Leave the instruction that the reset abandoned out of the recording.
@@ -139,8 +130,8 @@ class HostSession:
                 self._left = words[place:]
 
     def _record(self, words: Words) -> None:
-        if self._record_bytes is not None:
-            self._record_bytes(words.astype("<u2", copy=False).tobytes())
+        if self.record is not None:
+            self.record(words.astype("<u2", copy=False).tobytes())
 
     def _reply(self) -> bytes:
         count = min(self.display.processor.waiting, REPLY_PIECE)
@@ -175,25 +166,25 @@ REPLY_BYTES: Final = 1 << 18
 
 
 class Client:
-    """The host that is served now, with its socket, its waiting replies and its time limits.
+    """The host that is served now, with its socket, its waiting replies and its time limit.
 
-    A host that stops reading its replies loses them, but its words are still executed, as on a pipe.
+    A host that stops reading its replies loses them, but its words are still executed (Assumed: a host that
+    draws and leaves wants its picture).
     """
 
-    def __init__(
-        self, connected: socket.socket, session: HostSession, idle_seconds: float, partial_seconds: float
-    ) -> None:
-        """Serve a connected socket; OSError if it is lost already."""
+    def __init__(self, connected: socket.socket, session: HostSession, idle_seconds: float) -> None:
         self.socket = prepared(connected)
         self.session = session
-        self.idle_seconds, self.partial_seconds = idle_seconds, partial_seconds
-        self.waiting = 0
-        """The number of bytes of waiting replies."""
+        self.idle_seconds = idle_seconds
         self._replies: deque[bytes] = deque()
-        self._takes_replies = True
         self._pending: Iterator[bytes] | None = None
-        self._is_gone = self._sent_all = False
-        self._last_transfer = self._last_complete = time.monotonic()
+        self._sent_all = False
+        self._last_transfer = time.monotonic()
+
+    @property
+    def waiting(self) -> int:
+        """The number of bytes of waiting replies."""
+        return sum(map(len, self._replies))
 
     @property
     def has_work(self) -> bool:
@@ -201,117 +192,98 @@ class Client:
         return self._pending is not None and self.waiting < REPLY_BYTES
 
     @property
-    def wanted(self) -> int:
-        """The events of the socket that can be served now."""
-        reading = self._pending is None and not self._sent_all and self.waiting < REPLY_BYTES
-        return (selectors.EVENT_READ if reading else 0) | (selectors.EVENT_WRITE if self.waiting else 0)
-
-    @property
     def ended(self) -> bool:
-        """Whether the host is lost, or has left with all words executed and all replies sent."""
-        return self._is_gone or (self._sent_all and self._pending is None and not self.waiting)
+        """Whether the host has left, with all words executed and all replies sent, or is silent too long."""
+        has_left = self._sent_all and self._pending is None and not self._replies
+        return has_left or time.monotonic() >= self.deadline
 
     @property
     def deadline(self) -> float:
         """The time when the host is disconnected, unless something is transferred before."""
-        idle = self._last_transfer + self.idle_seconds
-        return min(idle, self._last_complete + self.partial_seconds) if self.session.unfinished else idle
+        return self._last_transfer + self.idle_seconds
 
-    def serve(self, events: int) -> bool:
-        """Read or write if the socket is ready; returns whether anything was transferred."""
-        sends = events & selectors.EVENT_WRITE and self.waiting
-        transferred = bool(sends and self._send())
+    def step(self, seconds: float = 0.0) -> bool:
+        """Read, execute and reply once, waiting up to `seconds`; returns whether anything was done."""
+        reads = self._pending is None and not self._sent_all and self.waiting < REPLY_BYTES
+        wanted = (selectors.EVENT_READ if reads else 0) | (selectors.EVENT_WRITE if self._replies else 0)
+        left = max(0.0, self.deadline - time.monotonic())
+        events = ready(self.socket, wanted, 0.0 if self.has_work else min(seconds, left))
+        if events & selectors.EVENT_WRITE:
+            self._send()
         if events & selectors.EVENT_READ:
-            transferred |= self._read()
-        if transferred:
+            self._read()
+        if events:
             self._last_transfer = time.monotonic()
-        return transferred
+        return self._work() or events != 0
 
-    def _send(self) -> bool:
+    def _send(self) -> None:
         """Send the next reply. Replies to different writes are in different packets."""
+        reply = self._replies.popleft()
         try:
-            count = write_socket(self.socket, self._replies[0])
+            if rest := reply[write_socket(self.socket, reply) :]:
+                self._replies.appendleft(rest)
         except OSError:
-            self._takes_replies = False
             self._replies.clear()
-            self.waiting = 0
-            return True
-        self.waiting -= count
-        if rest := self._replies.popleft()[count:]:
-            self._replies.appendleft(rest)
-        return count > 0
 
-    def _read(self) -> bool:
+    def _read(self) -> None:
+        has_packets = keeps_writes(self.socket)
         try:
-            data = read_socket(self.socket, READ_BYTES)
+            data = self._receive(socket.MSG_PEEK if has_packets else 0)
         except OSError:
-            self._is_gone = True
-            return False
+            data = b""
         if data is None:
-            return False
-        if not self.session.unfinished:
-            self._last_complete = time.monotonic()
-        if data:
-            # A packet is a write of the host: round it down to whole words.
-            whole = data[: len(data) & ~1] if keeps_writes(self.socket) else data
-            self._pending = self.session.feed(whole)
-        else:
-            self._sent_all = True
-        return True
+            return
+        self._sent_all = not data
+        if has_packets:
+            # A packet is a write of the host: round it down to whole words. It is taken when it is executed.
+            data = data[: len(data) & ~1]
+        if not self._sent_all:
+            self._pending = self.session.feed(data)
 
-    def work(self) -> bool:
+    def _receive(self, flags: int = 0) -> bytes | None:
+        try:
+            return read_socket(self.socket, READ_BYTES, flags)
+        except ConnectionError:
+            # If a host leaves without its replies, an error comes once, before the last packets of the host.
+            return read_socket(self.socket, READ_BYTES, flags)
+
+    def _work(self) -> bool:
         """Execute a piece of the host's words; returns whether there was a piece."""
-        if self.session.allowed == 0:
-            # Stop the clocks of a host that must wait.
-            self._last_transfer = self._last_complete = time.monotonic()
-        if not self.has_work or self._pending is None:
-            return False
-        begin = time.monotonic()
-        reply = next(self._pending, None)
-        # Stop the clocks of the host while the display works.
-        took = time.monotonic() - begin
-        self._last_transfer += took
-        self._last_complete += took
-        if reply is None:
-            self._pending = None
-        elif reply and self._takes_replies:
-            self._replies.append(reply)
-            self.waiting += len(reply)
-        if not self.session.unfinished:
-            self._last_complete = time.monotonic()
-        return True
+        has_work = self.has_work
+        if has_work and self._pending is not None:
+            reply = next(self._pending, None)
+            if reply:
+                self._replies.append(reply)
+            elif reply is None:
+                self._pending = None
+                if keeps_writes(self.socket):
+                    # The packet is executed: take it out of the socket.
+                    self._receive()
+        if has_work or self.session.is_stopped:
+            # The display was working, or a program stops the host: this was no silence of the host.
+            self._last_transfer = time.monotonic()
+        return has_work
 
-    @property
-    def unexecuted(self) -> int:
-        """The number of the host's words that have arrived and are not executed."""
-        data = waiting_bytes(self.socket) + len(self.session.odd_byte)
-        return data // 2 + self.session.unexecuted
-
-    def leave(self) -> None:
-        """Close the socket and drop the unfinished instruction and the replies."""
+    def close(self) -> None:
+        """Close the socket, and drop the replies."""
         if self._pending is not None:
-            # Tell the host that not all its words were executed.
+            # Tell the host that not all its words were executed; an unread packet tells it, too.
             break_off(self.socket)
-        self._pending = None
-        self.session.leave()
         self.socket.close()
 
 
 IDLE_SECONDS: Final = 600.0
-PARTIAL_SECONDS: Final = 60.0
 HOSTS_IN_LINE: Final = 128
 """Limit: the most hosts that wait in line."""
 
-Self = TypeVar("Self", bound="Server")
-
 
 class Server:
-    """A display that serves the hosts of a listening socket; `address` is the address for a host's port."""
+    """A display that serves one host after the other; `address` is the address for a host's port."""
 
     def __init__(
         self,
         display: Ramtek9300,
-        listener: socket.socket,
+        listener: socket.socket | None,
         address: str,
         idle_seconds: float,
         record: Record | None,
@@ -321,13 +293,9 @@ class Server:
         self.session = HostSession(display, record)
         """The session of all hosts, one after the other."""
         self.idle_seconds = idle_seconds
-        self.partial_seconds = PARTIAL_SECONDS
         self.served = 0
         """The number of hosts that were served and have left; it never decreases."""
         self._listener = listener
-        self._listener.setblocking(False)
-        self._selector = selectors.DefaultSelector()
-        self._selector.register(self._listener, selectors.EVENT_READ)
         self._client: Client | None = None
 
     @property
@@ -335,26 +303,15 @@ class Server:
         """Whether a host is being served."""
         return self._client is not None
 
-    @property
-    def unexecuted(self) -> int:
-        """The number of words of the host that is served which have arrived and are not executed."""
-        return 0 if self._client is None else self._client.unexecuted
-
     def step(self, seconds: float = 0.0) -> bool:
         """Serve once, waiting up to `seconds` for an event; returns whether anything was done."""
-        client = self._client
-        if client is None:
-            return bool(self._selector.select(seconds)) and self._accept()
-        left = max(0.0, client.deadline - time.monotonic())
-        seconds = 0.0 if client.has_work else min(seconds, left)
-        self._selector.modify(client.socket, client.wanted or selectors.EVENT_WRITE)
-        done = False
-        for _, events in self._selector.select(seconds):
-            done |= client.serve(events)
-        done |= client.work()
-        if client.ended or time.monotonic() >= client.deadline:
+        if self._client is None:
+            # While a host is served, other hosts wait in the listener's line.
+            return self._accept(seconds)
+        done = self._client.step(seconds)
+        if self._client.ended:
             self._disconnect()
-            done = True
+            return True
         return done
 
     def serve_for(self, seconds: float, wait: float = 0.0) -> None:
@@ -367,48 +324,40 @@ class Server:
         while done and time.monotonic() < end:
             done = self.step()
 
-    def reset(self) -> None:
-        """Press RESET on the control unit: drops the unfinished instruction; the host stays connected."""
-        self.session.reset()
-
     def close(self) -> None:
         """Disconnect the host and stop listening; the hosts in line are turned away."""
         self._disconnect()
-        self._selector.close()
-        self._listener.close()
+        if self._listener is not None:
+            self._listener.close()
 
-    def __enter__(self: Self) -> Self:
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, place: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _accept(self) -> bool:
+    def _accept(self, seconds: float) -> bool:
+        """Take the next host, waiting up to `seconds` for it; returns whether there is one."""
+        if self._listener is None or not ready(self._listener, selectors.EVENT_READ, seconds):
+            return False
+        self._listener.setblocking(False)
         try:
             connected, _ = self._listener.accept()
         except OSError:
             # The host has disconnected already.
             return False
-        try:
-            connected.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-            self._client = Client(connected, self.session, self.idle_seconds, self.partial_seconds)
-        except OSError:
-            connected.close()
-            return True
-        # While this host is served, other hosts wait in the listener's line.
-        self._selector.unregister(self._listener)
-        self._selector.register(connected, selectors.EVENT_READ)
+        self._client = Client(connected, self.session, self.idle_seconds)
         return True
 
     def _disconnect(self) -> None:
         if self._client is not None:
-            self._selector.unregister(self._client.socket)
-            self._client.leave()
+            self._client.close()
             self._client = None
-            self._selector.register(self._listener, selectors.EVENT_READ)
             self.served += 1
+            self._leave()
+
+    def _leave(self) -> None:
+        self.session.leave()
 
 
 class TcpServer(Server):
@@ -432,7 +381,6 @@ class TcpServer(Server):
                 f"a server must have a free port, and {host}:{port} cannot be opened ({reason_of(cause)}); "
                 "choose another, or 0 for any"
             ) from cause
-        self.host = host
         self.port: int = listener.getsockname()[1]
         address = f"tcp://{f'[{host}]' if ':' in host else host}:{self.port}"
         super().__init__(display, listener, address, idle_seconds, record)
@@ -486,45 +434,40 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
     The name appears when the socket listens already, so that no host that finds it is refused. Before, the
     socket has a hidden name in the same folder.
     """
-    folder, name = os.path.split(path)
-    # The hidden name is as long, so that a path that is too long for a socket is refused.
-    hidden = os.path.join(folder, f".{secrets.token_hex(4)}{name[9:]}")
     # The socket's file gets the permissions of the socket: set them before the file exists.
-    if sys.platform != "win32":
-        os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
-    listener.bind(hidden)
+    os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
+    folder = os.open(os.path.dirname(path) or ".", os.O_PATH)
+    # A socket's name is short: name the folder by its descriptor, so that each path that fits can be taken.
+    hidden = f"/proc/self/fd/{folder}/.{secrets.token_hex(4)}"
     try:
-        listener.listen(HOSTS_IN_LINE)
-        remove_stale_socket(path)
-        # Unlike a renaming, a link replaces no file that another server has made meanwhile.
+        listener.bind(hidden)
         try:
-            os.link(hidden, path)
-        except FileExistsError:
-            raise taken(path, "exists") from None
-        return os.lstat(path)
+            listener.listen(HOSTS_IN_LINE)
+            remove_stale_socket(path)
+            # Unlike a renaming, a link replaces no file that another server has made meanwhile.
+            try:
+                os.link(hidden, path)
+            except FileExistsError:
+                raise taken(path, "exists") from None
+            return os.lstat(path)
+        finally:
+            os.unlink(hidden)
     finally:
-        os.unlink(hidden)
+        os.close(folder)
 
 
 def remove_stale_socket(path: str) -> None:
-    """Remove the socket of a server that is gone; OutputExistsError if anything else is at the path."""
-    try:
-        kind = os.lstat(path).st_mode
-    except FileNotFoundError:
-        return
-    thing = "exists"
-    if sys.platform != "win32" and stat.S_ISSOCK(kind):
-        thing = "belongs to a server that runs"
-        # A running server refuses a socket of another type and is not disturbed.
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
-            try:
-                asking.connect(path)
-            except ConnectionRefusedError:
-                os.unlink(path)
-                return
-            except OSError:
-                pass
-    raise taken(path, thing)
+    """Remove the socket of a server that is gone; OutputExistsError if anything else is at the path.
+
+    OSError if the path is too long for a socket.
+    """
+    # A running server refuses a socket of another type and is not disturbed.
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
+        refusal = asking.connect_ex(path)
+    if refusal == errno.EPROTOTYPE:
+        raise taken(path, "belongs to a server that runs")
+    if refusal == errno.ECONNREFUSED and stat.S_ISSOCK(os.lstat(path).st_mode):
+        os.unlink(path)
 
 
 def taken(path: str, thing: str) -> OutputExistsError:

@@ -96,9 +96,10 @@ def _where(name: str, one: AnyArray, other: AnyArray) -> Any:
 
 
 def values_of(display: Ramtek9300) -> dict[str, Any]:
-    """The state of a display by the names of its values, and the name of its status."""
+    """The state of a display by the names of its values, without its sizes, and the name of its status."""
     values = {name: value for part in display.state().values() for name, value in part.items()}
-    del values["illegal"], values["enter_is_pressed"]
+    for name in ("illegal", "enter_is_pressed", "whole_window", "whole_word"):
+        del values[name]
     return values | {"status": str(display.status.name)}
 
 

@@ -11,10 +11,9 @@ from typing import Final, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
-from ramtek_emu.arrays import AnyArray, Dots
+from ramtek_emu.arrays import AnyArray
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.replay import Replay
-from ramtek_emu.inspection.watching import watched, watched_table
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Window
 
@@ -31,6 +30,15 @@ class EntryRange(NamedTuple):
 
 Selection: TypeAlias = Window | EntryRange
 """Pixels of the memory, or entries of the lookup table."""
+
+
+def is_single(selection: Selection) -> bool:
+    """Whether a selection is one pixel or one entry."""
+    if isinstance(selection, EntryRange):
+        return selection.end - selection.first == 1
+    return selection.width == selection.height == 1
+
+
 Result = TypeVar("Result")
 Search: TypeAlias = Generator[None, None, Result]
 """A search that pauses after each instruction, and returns its result at the end."""
@@ -60,64 +68,82 @@ def history_of(replay: Replay, selection: Selection, until: int) -> Search[list[
     An instruction that writes several times is a single write.
     """
     found = []
-    for change in _changes(replay, selection, 0, until):
-        if change is not None:
-            found.append(Write(change.number, change.before.item(), change.after.item()))
+    for write in _writes(replay, selection, 0, until):
+        if write is not None:
+            number, before, after = write
+            found.append(Write(number, before.item(), after.item()))
         yield
     return found
 
 
 def next_change(replay: Replay, selection: Selection, after: int) -> Search[int | None]:
     """The first instruction after `after` that changes a word or color of a selection, or None."""
-    for change in _changes(replay, selection, after, len(replay.stream)):
-        if change is not None and not np.array_equal(change.before, change.after):
-            return change.number
+    for number in _changes(replay, selection, after, len(replay.stream)):
+        if number is not None:
+            return number
         yield
     return None
 
 
 def last_change(replay: Replay, selection: Selection, before: int) -> Search[int | None]:
     """The last instruction before `before` that changes a word or color of a selection, or None."""
-    parts = [(0, max(0, before - 1))]
-    if isinstance(selection, Window):
-        parts = [(begin, end) for begin, end, _ in replay.stretches(selection, 0, before - 1)]
-    for begin, end in reversed(parts):
-        number = None
-        for change in _changes(replay, selection, begin, end):
-            if change is not None and not np.array_equal(change.before, change.after):
-                number = change.number
+    for part in reversed(_parts(replay, selection, 0, before - 1)):
+        last = None
+        for number in _changes(replay, selection, *part):
+            last = last if number is None else number
             yield
-        if number is not None:
-            return number
+        if last is not None:
+            return last
     return None
 
 
-class SelectionWrite(NamedTuple):
-    """An instruction that wrote to a selection, with its words or colors before and after."""
-
-    number: int
-    before: AnyArray
-    after: AnyArray
-
-
-def _changes(replay: Replay, selection: Selection, after: int, until: int) -> Iterator[SelectionWrite | None]:
-    """The instructions that write to a selection; None for any other instruction, or part of the stream."""
+def _parts(replay: Replay, selection: Selection, after: int, until: int) -> list[tuple[int, int]]:
+    """The parts of the stream that may write to a selection, after `after` up to `until`."""
     if isinstance(selection, EntryRange):
-        # No other instruction changes entries, so only loads are executed.
-        loads = np.flatnonzero(replay.stream.opcodes[after:until] == LOAD) + after + 1
-        display = replay.display_at(after)
-        touched = watched_table(display).watch()[selection.first : selection.end]
-        colors = display.lookup_table.packed[selection.first : selection.end]
-        yield from _noted(display, touched, colors, _executed(replay, display, loads.tolist()))
-        return
-    for begin, end, may_write in replay.stretches(selection, after, until):
-        if not may_write:
-            yield None
-            continue
+        return [(after, max(after, until))]
+    return replay.stretches(selection, after, until)
+
+
+def _changes(replay: Replay, selection: Selection, after: int, until: int) -> Iterator[int | None]:
+    """The numbers of instructions that change a selection; None for any other instruction."""
+    for write in _writes(replay, selection, after, until):
+        yield None if write is None or np.array_equal(*write[1:]) else write[0]
+
+
+def _writes(
+    replay: Replay, selection: Selection, after: int, until: int
+) -> Iterator[tuple[int, AnyArray, AnyArray] | None]:
+    """The instructions that write to a selection, with its words or colors before and after.
+
+    None stands for any other instruction that is executed.
+    """
+    touched: AnyArray
+    memory: AnyArray
+    for begin, end in _parts(replay, selection, after, until):
         display = replay.display_at(begin)
-        touched = watched(display).watch(selection)
-        words = display.words[selection.top : selection.bottom + 1, selection.left : selection.right + 1]
-        yield from _noted(display, touched, words, replay.steps(display, begin, end))
+        if isinstance(selection, EntryRange):
+            # No other instruction changes entries, so only loads are executed.
+            loads = np.flatnonzero(replay.stream.opcodes[begin:end] == LOAD) + begin + 1
+            numbers = _executed(replay, display, loads.tolist())
+            table, part = display.lookup_table, slice(selection.first, selection.end)
+            table.touched = np.zeros(table.size, np.bool_)
+            touched, memory = table.touched[part], table.packed[part]
+        else:
+            numbers = replay.steps(display, begin, end)
+            frame_buffer = display.frame_buffer
+            place = slice(selection.top, selection.bottom + 1), slice(selection.left, selection.right + 1)
+            frame_buffer.touched = np.zeros(display.words.shape, np.bool_)
+            touched, memory = frame_buffer.touched[place], frame_buffer.words[place]
+        before = memory.copy()
+        for number in numbers:
+            display.processor.replies.clear()
+            if not touched.any():
+                yield None
+                continue
+            touched[...] = False
+            now = memory.copy()
+            yield number, before, now
+            before = now
 
 
 def _executed(replay: Replay, display: Ramtek9300, numbers: list[int]) -> Iterator[int]:
@@ -125,19 +151,3 @@ def _executed(replay: Replay, display: Ramtek9300, numbers: list[int]) -> Iterat
     for number in numbers:
         display.send(replay.stream.words_between(number - 1, number))
         yield number
-
-
-def _noted(
-    display: Ramtek9300, touched: Dots, memory: AnyArray, numbers: Iterator[int]
-) -> Iterator[SelectionWrite | None]:
-    """The changes of a part of a memory that executed instructions touch."""
-    before = memory.copy()
-    for number in numbers:
-        display.processor.clear_replies()
-        if not touched.any():
-            yield None
-            continue
-        touched[...] = False
-        now = memory.copy()
-        yield SelectionWrite(number, before, now)
-        before = now

@@ -6,7 +6,9 @@ A poll is an instruction that reads, such as RCSS. Consecutive polls with equal 
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -17,13 +19,23 @@ from ramtek_emu.instruction_set.disassembler import data_texts, head_text
 from ramtek_emu.instruction_set.table import FORMATS
 
 LONGEST_MEANING: Final = 200
-"""The most characters of an instruction in the listing."""
+"""The most characters of an instruction in a row of the listing."""
 POLLS: Final = frozenset(format.opcode for format in FORMATS if format.meaning.startswith("read "))
 """The opcodes of instructions that read."""
 
 
 def meaning_of(stream: Stream, number: int) -> str:
     """The right side of an instruction's listing in one line, cut after LONGEST_MEANING characters."""
+    return _meaning(stream, number, int(stream.ends[number]))
+
+
+@lru_cache(256)
+def _meaning(stream: Stream, number: int, _: int) -> str:
+    return whole_meaning_of(stream, number, LONGEST_MEANING)
+
+
+def whole_meaning_of(stream: Stream, number: int, most: int = sys.maxsize) -> str:
+    """The right side of an instruction's listing in one line, cut after `most` characters."""
     item = stream.item(number)
     if item.instruction is None:
         words = " ".join(f"{word:04X}" for word in item.words[:8].tolist())
@@ -31,24 +43,23 @@ def meaning_of(stream: Stream, number: int) -> str:
     text = head_text(item.instruction)
     for _, data in data_texts(item.instruction):
         text += f"  {data}"
-        if len(text) > LONGEST_MEANING:
+        if len(text) > most:
             break
-    return text[:LONGEST_MEANING]
+    return text[:most]
 
 
 def row_at(stream: Stream, number: int) -> range:
     """The instructions in the row of an instruction: equal polls, or itself; 0 is the start."""
     if number == 0:
         return range(1)
-    place = stream.place(number)
-    if int(stream.words[place]) >> 8 not in POLLS:
+    if int(stream.words[stream.ends[number - 1]]) >> 8 not in POLLS:
         return range(number, number + 1)
     return range(number - _equal(stream, number, -1), number + 1 + _equal(stream, number, 1))
 
 
 def _equal(stream: Stream, number: int, direction: int) -> int:
     """How many instructions before or after an instruction, in a row, have its words."""
-    words, place = stream.words_between(number - 1, number), stream.place(number)
+    words, place = stream.words_between(number - 1, number), stream.ends[number - 1]
     most, count = (len(stream) - number if direction > 0 else number - 1), 64
     while True:
         steps = direction * np.arange(1, min(count, most) + 1)
@@ -95,10 +106,10 @@ def pattern_of(text: str) -> re.Pattern[str]:
 
 
 def next_with(stream: Stream, text: str, numbers: Iterable[int]) -> Search[int | None]:
-    """The first of some instructions whose row has a text; None if no row has it."""
+    """The first of some instructions whose whole listing has a text; None if there is none."""
     pattern = pattern_of(text)
     for number in numbers:
-        if pattern.search(meaning_of(stream, number)):
+        if pattern.search(whole_meaning_of(stream, number)):
             return number
         yield
     return None

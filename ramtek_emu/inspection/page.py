@@ -10,15 +10,16 @@ is reached and every other half second. An orange ring is around what is selecte
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
 from ramtek_emu.arrays import Colors, Dots, PackedColors
 from ramtek_emu.inspection import panels
-from ramtek_emu.inspection.histories import EntryRange
-from ramtek_emu.inspection.session import Inspection, display_of, shown_pixels
+from ramtek_emu.inspection.histories import EntryRange, is_single
+from ramtek_emu.inspection.session import Inspection, display_of, is_preparing, shown_pixels
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import (
     ADVANCE,
@@ -37,7 +38,7 @@ from ramtek_emu.monitor.boxes import (
     mark,
     write_rows,
 )
-from ramtek_emu.video.scan_out import Run, united
+from ramtek_emu.video.scan_out import Run
 
 GAP: Final = 8
 SIDE_CHARACTERS: Final = 64
@@ -48,9 +49,9 @@ EDGE: Final = 2
 """The pixels around the field, for the rings."""
 TALL_LINES: Final = 800
 """A field with so many lines has all panels at its right."""
-PARAMETER_ROWS: Final = {2: 14, 3: 9}
-PARAMETER_WIDTHS: Final = {2: (34, 30), 3: (33, 28, 18)}
-"""The rows and the widths in characters, by the number of columns."""
+PARAMETER_ROWS: Final = {True: 14, False: 9}
+PARAMETER_WIDTHS: Final = {True: (34, 30), False: (33, 28, 18)}
+"""The rows and the widths of the columns in characters, by whether the field is tall."""
 DISTANCE: Final = 2
 """The pixels between a selected pixel and the rings around it."""
 BUTTON_LINES: Final = 15
@@ -83,7 +84,7 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
     left, top = (stage.width - elements * zoom) // 2, (stage.height - lines * zoom) // 2
     field = PageBox(left, top, elements * zoom, lines * zoom)
     is_tall = stage.height >= TALL_LINES
-    rows = PARAMETER_ROWS[2 if is_tall else 3]
+    rows = PARAMETER_ROWS[is_tall]
     right, side, top = stage.width + GAP, SIDE_CHARACTERS * ADVANCE, GAP // 2
     bottom = stage.height + (0 if is_tall else (rows + cursors) * ROW + 2 * GAP)
     listed = (bottom - top - 4 * GAP) // ROW - 4 - (rows + cursors + 1 if is_tall else 0)
@@ -98,6 +99,10 @@ def layout_of(elements: int, lines: int, cursors: int, buttons: Sequence[str]) -
     for name, rows in (panels_at_right | {"pixels": 3}).items():
         boxes[name] = PageBox(right, top, side, rows * ROW)
         top += rows * ROW + (0 if name == "parameters" else GAP)
+    left, down, _, height = boxes.pop("parameters")
+    for column, width in enumerate(PARAMETER_WIDTHS[is_tall]):
+        boxes[f"parameters {column}"] = PageBox(left, down, width * ADVANCE, height)
+        left += width * ADVANCE
     boxes["history"] = PageBox(right, top, side, (bottom - top) // ROW * ROW)
     places, left = [], GAP
     for label in buttons:
@@ -124,14 +129,20 @@ class InspectorPage:
         self.layout = layout
         self.elements, self.lines = layout.elements, layout.lines
         self.blink_is_on = True
-        self._buttons, self._help_rows, self._title = buttons, help_rows, title
-        self._pixels: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
+        self._help_rows, self._title = help_rows, title
+        self._pixels: PackedColors = np.full((self.lines, self.elements), BLACK, np.uint32)
+        bottom = layout.bar.top - BUTTON_LINES - 9
+        self._pixels[:bottom, layout.stage.width] = RAISED
+        self._pixels[layout.stage.height, : layout.stage.width] = self._pixels[bottom] = RAISED
+        for box, text in zip(layout.buttons, buttons, strict=True):
+            box.of(self._pixels)[...] = RAISED
+            write_rows(box.of(self._pixels)[2:], [(Span(f" {text} "),)], RAISED)
         self._marked: tuple[int, bool] = (-1, True)
         """The current instruction, and the phase of the blinking when it was reached."""
+        self._shown: dict[str, Any] = {}
+        """What the parts of the page show."""
         self._drawn: Any = None
-        self._before: Any = None
-        self._runs: tuple[Run, ...] = ()
-        """The lines that the last drawing changed."""
+        """The stamp of the page as it is drawn."""
 
     # A field for the window.
 
@@ -143,28 +154,25 @@ class InspectorPage:
         scan_out.blink_is_on = self.blink_is_on
         if self._marked[0] != self.session.number:
             self._marked = self.session.number, self.blink_is_on
-        return self.session, scan_out.stamp, self.session.written is not None and self._marks_are_shown
+        replay = self.session.replay
+        place = len(replay.stream.words), replay.prepared
+        return self.session, place, scan_out, scan_out.stamp, self._marks_are_shown
 
     @property
     def _marks_are_shown(self) -> bool:
-        return self._marked[1] == self.blink_is_on
+        """Whether rings are around the pixels that the instruction writes now."""
+        session, phase = self.session, self._marked[1]
+        has_written = session.replay.written is not None and session.replay.number == session.number
+        return has_written and not session.is_following and phase == self.blink_is_on
 
-    def lines_changed_since(self, last: Any) -> tuple[Run, ...]:
-        """The lines that may have changed since the page with the stamp `last`; all lines for None."""
+    def scan_out_changes_into(self, pixels: PackedColors, _: Any) -> tuple[Any, tuple[Run, ...]]:
+        """Bring any pixels up to date; returns their stamp, and the lines that differed."""
         self.draw()
-        if last == self._drawn:
-            return ()
-        return self._runs if last is not None and last == self._before else ((0, self.lines),)
-
-    def scan_out_changes_into(self, pixels: PackedColors, last: Any) -> Any:
-        """Bring pixels with the stamp `last` up to date, and return their new stamp."""
-        for first, end in self.lines_changed_since(last):
+        differing = np.flatnonzero((pixels != self._pixels).any(axis=1))
+        runs = [(int(differing[0]), int(differing[-1]) + 1)] if len(differing) else []
+        for first, end in runs:
             pixels[first:end] = self._pixels[first:end]
-        return self._drawn
-
-    def table(self) -> PackedColors:
-        """The colors of all words of the display."""
-        return display_of(self.session).scan_out.table()
+        return self._drawn, tuple(runs)
 
     def field(self) -> Colors:
         """The field of the display, without the page around it."""
@@ -178,23 +186,34 @@ class InspectorPage:
     # Drawing.
 
     def draw(self) -> None:
-        """Draw the page if it has changed."""
+        """Draw the parts of the page that have changed."""
         stamp = self.stamp
         if stamp == self._drawn:
             return
-        session, layout, boxes = self.session, self.layout, self.layout.boxes
-        pixels: PackedColors = np.full((self.lines, self.elements), BLACK, np.uint32)
-        bottom = layout.bar.top - BUTTON_LINES - 9
-        pixels[:bottom, layout.stage.width] = RAISED
-        pixels[layout.stage.height, : layout.stage.width] = pixels[bottom] = RAISED
-        self._draw_stage(layout.stage.of(pixels))
-        parameters, rows = panels.parameters(session), boxes["parameters"].rows
-        left = 0
-        for number, width in enumerate(PARAMETER_WIDTHS[-(-len(parameters) // rows)]):
-            part = boxes["parameters"].of(pixels)[:, left : left + width * ADVANCE]
-            write_rows(part, parameters[number * rows : (number + 1) * rows])
-            left += width * ADVANCE
-        panel_rows: dict[str, Sequence[Line]] = {
+        session, layout = self.session, self.layout
+        self._drawn = stamp
+        marks = self._marks_are_shown and session.number
+        self._part(
+            "stage", layout.stage, (stamp[2:], marks, session.page, session.selection), self._draw_stage
+        )
+        for name, rows in self._rows().items():
+            self._part(name, layout.boxes[name], rows, partial(write_rows, rows=rows))
+        prepared = session.replay.prepared if is_preparing(session) else session.length
+        numbers = session.length, prepared, session.target, session.number
+        self._part("bar", layout.bar, (numbers, session.writes), partial(self._draw_bar, prepared=prepared))
+
+    def _part(self, name: str, box: PageBox, shown: Any, draw: Callable[[PackedColors], None]) -> None:
+        """Draw a part of the page if what it shows has changed."""
+        if shown != self._shown.get(name):
+            self._shown[name] = shown
+            pixels = box.of(self._pixels)
+            pixels[...] = BLACK
+            draw(pixels)
+
+    def _rows(self) -> dict[str, Sequence[Line]]:
+        """The rows of the panels."""
+        session, boxes = self.session, self.layout.boxes
+        rows: dict[str, Sequence[Line]] = {
             "listing": [panels.title(session), *panels.listing(session)],
             "words": panels.words_of_the_instruction(session, boxes["words"].rows - 1, SIDE_CHARACTERS),
             "cursors": panels.cursors(session),
@@ -202,16 +221,10 @@ class InspectorPage:
             "history": [panels.history_title(session), *panels.history(session)],
             "status": [panels.status(session)],
         }
-        for name, lines in panel_rows.items():
-            write_rows(boxes[name].of(pixels), lines)
-        for box, button in zip(layout.buttons, self._buttons, strict=True):
-            part = box.of(pixels)
-            part[...] = RAISED
-            write_rows(part[2:], [(Span(f" {panels.button_text(session, button)} "),)], RAISED)
-        self._draw_bar(layout.bar.of(pixels))
-        changed = np.flatnonzero((pixels != self._pixels).any(axis=1)).tolist()
-        self._runs = united(((line, line + 1) for line in changed), self.lines)
-        self._before, self._drawn, self._pixels = self._drawn, stamp, pixels
+        parameters, height = panels.parameters(session), boxes["parameters 0"].rows
+        for column, first in enumerate(range(0, len(parameters), height)):
+            rows[f"parameters {column}"] = parameters[first : first + height]
+        return rows
 
     def _draw_stage(self, stage: PackedColors) -> None:
         session, scan_out = self.session, display_of(self.session).scan_out
@@ -232,14 +245,15 @@ class InspectorPage:
             field[...] = self._enlarged(pixels)
             shown = self.layout.field.of(dots)
             places, rows = shown_pixels(display_of(session))
-            if session.written is not None and self._marks_are_shown:
-                shown[...] = self._enlarged(session.written[rows[:, np.newaxis], places])
+            written = session.replay.written
+            if written is not None and self._marks_are_shown:
+                shown[...] = self._enlarged(written[rows[:, np.newaxis], places])
                 mark(stage, dots, BLACK, WHITE)
             if isinstance(selection, Window):
                 inside = (places >= selection.left) & (places <= selection.right)
                 within = (rows >= selection.top) & (rows <= selection.bottom)
                 shown[...] = self._enlarged(within[:, np.newaxis] & inside)
-                if selection.width == selection.height == 1:
+                if is_single(selection):
                     for _ in range(DISTANCE):
                         dots = grown(dots)
                 mark(stage, dots, BLACK, ORANGE)
@@ -251,14 +265,15 @@ class InspectorPage:
     def _cells(self) -> Any:
         """The words at the pixels of the page of entries."""
         stage = self.layout.stage
-        return cells(len(self.table()), stage.height - 2 * EDGE, stage.width - 2 * EDGE)
+        words = len(display_of(self.session).scan_out.table())
+        return cells(words, stage.height - 2 * EDGE, stage.width - 2 * EDGE)
 
-    def _draw_bar(self, bar: PackedColors) -> None:
+    def _draw_bar(self, bar: PackedColors, prepared: int) -> None:
         session = self.session
-        prepared = session.length if session.host is not None else session.prepared
         bar[...] = RAISED
         bar[:, : self.bar_place(prepared) + 1] = PREPARED
-        bar[3:-3, [self.bar_place(write.number) for write in session.writes or ()]] = ORANGE
+        for place in {self.bar_place(write.number) for write in session.writes or ()}:
+            bar[3:-3, place] = ORANGE
         for number, color in ((session.target, GRAY), (session.number, WHITE)):
             place = self.bar_place(number)
             bar[:, max(0, place - 1) : place + 2] = color
@@ -295,12 +310,13 @@ class InspectorPage:
         element = min(max(place.element - field.left, 0), field.width - 1)
         return Point(element // zoom, min(max(place.line - field.top, 0), field.height - 1) // zoom)
 
-    def entry_at(self, place: Point) -> int | None:
+    def entry_at(self, place: Point) -> EntryRange | None:
         """The entry at a place of the page of entries; None if there is none."""
         words = self._cells()
         line, element = (
             min(max(at - EDGE, 0), size - 1)
             for at, size in zip((place.line, place.element), words.shape, strict=True)
         )
-        word = int(words[line, element])
-        return display_of(self.session).scan_out.first_entry + word if word < len(self.table()) else None
+        word, scan_out = int(words[line, element]), display_of(self.session).scan_out
+        entry = scan_out.first_entry + word
+        return EntryRange(entry, entry + 1) if word < len(scan_out.table()) else None

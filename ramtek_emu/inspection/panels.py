@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 import textwrap
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import islice
+from operator import attrgetter
 from typing import Final
 
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection.histories import EntryRange, Write
-from ramtek_emu.inspection.listing import meaning_of, rows_from
+from ramtek_emu.inspection.histories import EntryRange, Selection, Write, is_single
+from ramtek_emu.inspection.listing import meaning_of
 from ramtek_emu.inspection.session import (
     Inspection,
     display_of,
+    is_preparing,
     parameter_texts,
     selection_text,
+    shown_rows,
+    shown_writes,
 )
 from ramtek_emu.instruction_set.disassembler import WORDS_PER_LINE
-from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Window
 from ramtek_emu.monitor.boxes import BLUE, GRAY, ORANGE, WHITE, YELLOW, Line, Span
 from ramtek_emu.video.view import PLAIN_VIEW, pixel_at, view_of
 
-PAUSE: Final = "pause"
-"""The button that pauses a host, or lets it go on."""
 MARKED: Final = 0x26405F
 """The background of the current instruction."""
 
@@ -45,14 +47,15 @@ def title(session: Inspection) -> Line:
 
 def listing(session: Inspection) -> list[Line]:
     """The instructions around the current instruction, which is marked."""
-    rows = rows_from(session.replay.stream, session.first_listed, session.listing_rows)
-    return [listed(session, row) for row in rows if row.start <= session.length]
+    return [listed(session, row) for row in shown_rows(session)]
 
 
 def listed(session: Inspection, row: range) -> Line:
     """A row of the listing; equal polls are a single row."""
     is_current = session.number in row
-    is_written = any(write.number in row for write in session.writes or ())
+    writes = session.writes or ()
+    following = bisect_left(writes, row.start, key=attrgetter("number"))
+    is_written = following < len(writes) and writes[following].number in row
     number = session.number if is_current else row.start
     background = MARKED if is_current else None
     mark = ">" if is_current else "*" if is_written else " "
@@ -83,10 +86,8 @@ def words_of_the_instruction(session: Inspection, rows: int, width: int) -> list
     if len(texts) > rows:
         texts[rows - 1 :] = [f"{'':7}..."]
     lines: list[Line] = [(Span(text),) for text in texts]
-    reply = session.replay.reply if session.replay.number == number else NO_WORDS
-    if reply is None and item.instruction is not None and item.instruction.format.replies:
-        lines.append((Span("reply  ", YELLOW), Span("not known", GRAY)))
-    elif reply is not None and len(reply):
+    reply = session.replay.reply
+    if session.replay.number == number and len(reply):
         more = f" .. {len(reply):,} words"
         shown = (width - len("reply  ") - len(more)) // len("0000 ")
         words = " ".join(f"{word:04X}" for word in reply[:shown].tolist())
@@ -118,7 +119,7 @@ def texts_at_reset(configuration: Configuration) -> dict[str, str]:
 def cursors(session: Inspection) -> list[Line]:
     """A line for each cursor: its place, and what is on; the joystick's switches in the first."""
     lines: list[Line] = []
-    state = display_of(session).state()["cursors"]
+    state = display_of(session).cursors.state()
     for number, cursor in enumerate(state["cursors"]):
         switches = {
             "visible": cursor["state"] & VISIBLE,
@@ -134,44 +135,37 @@ def cursors(session: Inspection) -> list[Line]:
 
 def pixels(session: Inspection) -> list[Line]:
     """The pixel or entry under the pointer, the selection, and, in another view, the place on the screen."""
-    lines: list[Line] = []
+    pointed: Selection | None = None
     view: list[Line] = []
-    if session.pointed_entry is not None:
-        lines.append((Span("pointer   ", YELLOW), *entry_spans(session, session.pointed_entry)))
-    elif session.pointer is not None:
+    if isinstance(session.pointed, EntryRange):
+        pointed = session.pointed
+    elif session.pointed is not None:
         display = display_of(session)
         parameters = display.processor.parameters
-        element, line = pixel_at(parameters, display.configuration, *session.pointer)
-        lines.append((Span("pointer   ", YELLOW), *pixel_spans(session, element, line)))
         if view_of(parameters) != PLAIN_VIEW:
-            view = [(Span(f"screen    {session.pointer.element},{session.pointer.line}", GRAY),)]
-    else:
-        lines.append((Span("pointer", YELLOW),))
-    selection = session.selection
-    if isinstance(selection, EntryRange) and selection.end - selection.first == 1:
-        lines.append((Span("selected  ", YELLOW), *entry_spans(session, selection.first)))
-    elif isinstance(selection, Window) and selection.width == selection.height == 1:
-        lines.append((Span("selected  ", YELLOW), *pixel_spans(session, selection.left, selection.top)))
-    elif selection is not None:
-        lines.append((Span("selected  ", YELLOW), Span(selection_text(selection))))
-    else:
-        lines.append(())
-    return lines + view
+            view = [(Span(f"screen    {session.pointed.element},{session.pointed.line}", GRAY),)]
+        element, line = (
+            int(place) for place in pixel_at(parameters, display.configuration, *session.pointed)
+        )
+        pointed = Window(element, line, element, line)
+    parts = {"pointer   ": pointed, "selected  ": session.selection}
+    return [(Span(name, YELLOW), *selection_spans(session, part)) for name, part in parts.items()] + view
 
 
-def pixel_spans(session: Inspection, element: int, line: int) -> Line:
-    """A pixel of the memory: place, word, entry and color."""
-    word = int(display_of(session).words[line, element])
-    first = display_of(session).scan_out.first_entry
-    return (
-        Span(f"{element},{line}  word {word:04X} = {word}  entry {first + word} "),
-        *word_spans(session, word),
-    )
-
-
-def entry_spans(session: Inspection, entry: int) -> Line:
-    """An entry of the lookup table: number and color."""
-    return Span(f"entry {entry} "), *color_spans(int(display_of(session).lookup_table.packed[entry]))
+def selection_spans(session: Inspection, selection: Selection | None) -> Line:
+    """A pixel of the memory with its word, entry and color; an entry with its color; or a range."""
+    if selection is None:
+        return ()
+    display = display_of(session)
+    if not is_single(selection):
+        return (Span(selection_text(selection)),)
+    if isinstance(selection, EntryRange):
+        entry = selection.first
+        return Span(f"entry {entry} "), *color_spans(int(display.lookup_table.packed[entry]))
+    element, line = selection.left, selection.top
+    word = int(display.words[line, element])
+    text = f"{element},{line}  word {word:04X} = {word}  entry {display.scan_out.first_entry + word} "
+    return Span(text), *word_spans(session, word)
 
 
 def word_spans(session: Inspection, word: int) -> Line:
@@ -195,8 +189,7 @@ def history_title(session: Inspection) -> Line:
 
 def history(session: Inspection) -> list[Line]:
     """The instructions that wrote the selected pixel or entry: the word or color before and after."""
-    writes = (session.writes or ())[session.first_write : session.first_write + session.history_rows]
-    return [write_line(session, write) for write in writes]
+    return [write_line(session, write) for write in shown_writes(session)]
 
 
 def write_line(session: Inspection, write: Write) -> Line:
@@ -222,39 +215,31 @@ def write_line(session: Inspection, write: Write) -> Line:
 
 def status(session: Inspection) -> Line:
     """The prompt, the message, or how far the preparation is."""
-    if session.prompt:
-        asked = "go to instruction" if session.prompt == "instruction" else "find, with Enter or Shift+Enter"
-        more = (Span(f"  {session.message}", ORANGE),) if session.message else ()
-        return Span(f"{asked}: ", YELLOW), Span(session.typed), Span("_", ORANGE), *more
+    if session.typed is not None:
+        prompt = Span("go to, or find with (Shift+) Enter: ", YELLOW), Span(session.typed), Span("_", ORANGE)
+        return (*prompt, Span(f"  {session.message}", ORANGE))
     if session.message:
         return (Span(session.message, ORANGE),)
+    prepared = session.replay.prepared
     if session.number != session.target:
-        return (Span(f"preparing {session.prepared:,} of {session.target:,} ... Esc stops", ORANGE),)
-    if session.host is None and session.prepared < session.length:
-        return (Span(f"preparing {100 * session.prepared // session.length} %", GRAY),)
+        return (Span(f"preparing {prepared:,} of {session.target:,} ... Esc stops", ORANGE),)
+    if is_preparing(session):
+        return (Span(f"preparing {100 * prepared // session.length} %", GRAY),)
     return ()
-
-
-def button_text(session: Inspection, button: str) -> str:
-    """The text of a button: "pause" reads "go on" while a host waits."""
-    return "go on" if button == PAUSE and not session.is_following else button
 
 
 def wrapped(lines: Iterable[str], width: int) -> Iterator[str]:
     """The lines of a listing; the meaning of the words is on lines of its own where it does not fit."""
     for line in lines:
+        if len(line) <= width:
+            yield line
+            continue
         place, _, rest = line.partition(":")
         words, text = rest[: 1 + 5 * WORDS_PER_LINE].strip(), rest[1 + 5 * WORDS_PER_LINE :].strip()
-        if not words and len(place) + 3 + len(text) <= width:
-            # Many data are listed without their words.
-            yield f"{place}:  {text}"
-        elif len(line) <= width:
-            yield line
-        else:
-            if words:
-                yield f"{place}: {words}"
-            first = "" if words else f"{place}: "
-            yield from textwrap.wrap(text, width, initial_indent=f"{first:7}", subsequent_indent=f"{'':7}")
+        if words:
+            yield f"{place}: {words}"
+        first = "" if words else f"{place}: "
+        yield from textwrap.wrap(text, width, initial_indent=f"{first:7}", subsequent_indent=f"{'':7}")
 
 
 def color_spans(color: int) -> Line:

@@ -4,7 +4,8 @@ A display cannot run backwards. So states are kept on the way, and a display is 
 from the last state before it. States are STATE_SECONDS of work apart while they take at most STATE_BYTES for
 each word of the stream; if they would take more, every second state is dropped.
 
-Replies are dropped, as by `ramtek play`. Only the reply of the last instruction is kept, in `reply`.
+Replies are dropped, as by `ramtek play`. Only the reply of the last instruction is kept, in `reply`, and
+`written` has the words that the instruction wrote.
 """
 
 from __future__ import annotations
@@ -18,11 +19,10 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Words
+from ramtek_emu.arrays import Dots, Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.states import Packer, State, size_of, thinned
 from ramtek_emu.inspection.stream import Stream
-from ramtek_emu.inspection.watching import watched
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.memory.scan_orders import Window
 
@@ -41,21 +41,27 @@ class Replay:
 
     def __init__(self, stream: Stream, start: Ramtek9300 | None = None) -> None:
         """Begin with a display as it is at power-on, or like `start` without its pending words."""
+        start = Ramtek9300(stream.configuration) if start is None else start
         self.stream = stream
         self.number = 0
         """How many instructions the display has executed; 0 is power-on."""
-        self.reply: Words | None = NO_WORDS
-        """The reply of the last instruction, uint16; None if it is not known."""
+        self.reply: Words = NO_WORDS
+        """The reply of the last instruction, uint16."""
+        self.written: Dots | None = None
+        """The (lines, elements) words that the last instruction wrote, also words that stayed the same.
+
+        Read-only; None at power-on.
+        """
         self._packer = Packer()
         self._seconds = STATE_SECONDS
         self._due = 0.0
-        self._bytes = 0
+        self.state_bytes = 0
+        """The bytes that the states take."""
         self._states: list[State] = []
-        begin = Ramtek9300(stream.configuration) if start is None else start
-        self._keep(self._packer.pack(begin, 0, NO_WORDS))
+        self._keep(start, 0, np.ones(start.words.shape, np.bool_))
         self.display = self.display_at(0)
         """The display after `number` instructions."""
-        self.display.scan_out.shown_table = begin.scan_out.shown_table
+        self.display.scan_out.shown_table = start.scan_out.shown_table
         self._preparing = self._prepare()
 
     def __repr__(self) -> str:
@@ -66,21 +72,15 @@ class Replay:
         """The number of instructions up to which states are kept."""
         return self._states[-1].number
 
-    @property
-    def state_bytes(self) -> int:
-        """The bytes that the states take."""
-        return self._bytes
-
     def prepare_for(self, seconds: float) -> bool:
         """Run on for up to `seconds`, and keep states; returns whether instructions are left."""
         end = perf_counter() + seconds
         for _ in self._preparing:
             if perf_counter() >= end:
                 break
-        if self.prepared < len(self.stream):
-            return True
-        self._preparing = self._prepare()
-        return False
+        else:
+            self._preparing = self._prepare()
+        return self.prepared < len(self.stream)
 
     def _prepare(self) -> Iterator[None]:
         """Run a display over the stream, and keep states; pauses after each instruction."""
@@ -88,52 +88,75 @@ class Replay:
         display = self.display_at(number)
         while number < len(self.stream):
             due = thread_time() + self._seconds
-            touched = watched(display).watch(display.frame_buffer.window)
-            reply = NO_WORDS
+            touched = display.frame_buffer.touched = np.zeros(display.words.shape, np.bool_)
             for step in self.steps(display, number, len(self.stream)):
-                number, reply = step, reply_of(display)
+                number = step
+                display.processor.replies.clear()
                 if thread_time() >= due:
                     break
                 yield
-            self._keep(self._packer.pack(display, number, reply, np.packbits(touched, axis=1)))
+            self._keep(display, number, touched)
             yield
 
-    def _keep(self, state: State) -> None:
+    def _keep(self, display: Ramtek9300, number: int, touched: Dots) -> None:
         """Keep a state, in place of an older state with its number; drop states if there are too many."""
+        state = self._packer.pack(display, number, touched)
         if self._states and self._states[-1].number == state.number:
-            self._states.pop()
-        self._bytes += size_of([*self._states[-1:], state]) - size_of(self._states[-1:])
+            self._drop_last()
+        self.state_bytes += self._bytes_of_next(state)
         self._states.append(state)
         most = max(LEAST_STATE_BYTES, STATE_BYTES * len(self.stream.words))
-        if self._bytes > most:
+        if self.state_bytes > most:
             self._seconds *= 2
             self._states = thinned(self._states)
-            self._bytes = size_of(self._states)
+            self.state_bytes = size_of(self._states)
 
-    def note(self, words: Words, display: Ramtek9300, has_moved: bool = False) -> None:
-        """Append whole instructions that a running display has executed, and keep its state if one is due.
+    def _drop_last(self) -> None:
+        state = self._states.pop()
+        self.state_bytes -= self._bytes_of_next(state)
 
-        The display must be between two instructions. With `has_moved`, something other than an instruction
-        has changed it, such as its joystick or a reset, and a state is due.
-        """
+    def _bytes_of_next(self, state: State) -> int:
+        """The bytes of a state that follows the last state and shares blocks with it."""
+        last = self._states[-1:]
+        return size_of([*last, state]) - size_of(last)
+
+    def append(self, words: Words) -> None:
+        """Append whole instructions that a running display has executed."""
         count, end = len(self.stream), self.stream.ends[-1]
         self.stream.append(words)
-        # The last state is within a row of illegal words if the row goes on; replace it.
-        was_within = self.prepared == count and self.stream.ends[count] > end
-        if has_moved or was_within or thread_time() >= self._due:
-            self._keep(self._packer.pack(display, len(self.stream), None))
+        if self.stream.ends[count] > end:
+            # A row of illegal words goes on. Forget the display within the row.
+            if self.number == count:
+                self.go_to(count - 1)
+            if self.prepared == count:
+                self._drop_last()
+
+    def note(self, display: Ramtek9300, has_moved: bool = False) -> None:
+        """Keep the state of a running display after the last instruction of the stream, if a state is due.
+
+        With `has_moved`, something other than an instruction has changed the display, such as its joystick,
+        and a state is due.
+        """
+        if has_moved or (self.prepared < len(self.stream) and thread_time() >= self._due):
+            self._keep(display, len(self.stream), np.ones(display.words.shape, np.bool_))
             self._due = thread_time() + self._seconds
 
     def go_to(self, number: int) -> None:
         """Bring the display to an instruction, forward or back."""
-        state = self.state_before(number)
-        if not state.number < self.number <= number:
+        state = self.state_before(max(0, number - 1))
+        if not state.number <= self.number < number:
             state.restore(self.display)
-            self.number, self.reply = state.number, state.reply
+            self.number, self.reply, self.written = state.number, NO_WORDS, None
         if number > self.number:
             self._run(self.display, self.number, number - 1)
+            written = self.display.frame_buffer.touched = np.zeros(self.display.words.shape, np.bool_)
             self.display.send(self.stream.words_between(number - 1, number))
-            self.number, self.reply = number, reply_of(self.display)
+            self.display.frame_buffer.touched = None
+            written.flags.writeable = False
+            self.number, self.reply, self.written = number, reply_of(self.display), written
+            if (state := self.state_before(number)).number == number:
+                # The joystick of a running display may have moved after the instruction.
+                state.restore(self.display)
 
     def display_at(self, number: int) -> Ramtek9300:
         """A new display after `number` instructions."""
@@ -145,24 +168,22 @@ class Replay:
     def _run(self, display: Ramtek9300, after: int, until: int) -> None:
         """Execute instructions, and drop their replies."""
         display.send(self.stream.words_between(after, until))
-        display.processor.clear_replies()
+        display.processor.replies.clear()
 
     def state_before(self, number: int) -> State:
         """The last state that was kept before an instruction, or after it exactly."""
         return self._states[bisect_right(self._states, number, key=attrgetter("number")) - 1]
 
-    def stretches(self, window: Window, after: int, until: int) -> Iterator[tuple[int, int, bool]]:
-        """The parts of the stream between states, from the instruction after `after` up to `until`.
+    def stretches(self, window: Window, after: int, until: int) -> list[tuple[int, int]]:
+        """The parts of the stream between states that may write to a window: (the number before, the last).
 
-        Yields the number before each part, its last number, and whether it may write to a window.
+        Only instructions after `after` and up to `until` are in them.
         """
-        # A running host adds states meanwhile.
-        for state, following in pairwise([*self._states, None]):
-            assert state is not None
-            begin = max(state.number, after)
-            end = until if following is None else min(following.number, until)
-            if end > begin:
-                yield begin, end, following is None or following.may_touch(window)
+        pairs = pairwise(self._states)
+        parts = [(state.number, later.number) for state, later in pairs if later.may_touch(window)]
+        parts.append((self.prepared, until))
+        clipped = ((max(begin, after), min(end, until)) for begin, end in parts)
+        return [(begin, end) for begin, end in clipped if begin < end]
 
     def steps(self, display: Ramtek9300, number: int, end: int) -> Iterator[int]:
         """Run a display from `number` to `end`; yields the number after each instruction."""

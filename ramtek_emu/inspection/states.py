@@ -1,7 +1,7 @@
-"""States: what displays are, packed into little memory; consecutive states share equal blocks.
+"""States: displays after some of the instructions of a stream, in little memory.
 
-A state is `Ramtek9300.state()`, pickled. Its arrays are cut into blocks. A block that equals the block of the
-state before is the same object, and the others are deflated.
+A state is `Ramtek9300.state()`, pickled. Its arrays are cut into blocks, which are deflated. If a block
+equals one of the previous state, both states share the deflated block.
 """
 
 from __future__ import annotations
@@ -9,11 +9,12 @@ from __future__ import annotations
 import pickle
 import zlib
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Bytes, Words
+from ramtek_emu.arrays import Bytes, Dots
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.memory.scan_orders import Window
 
@@ -32,10 +33,8 @@ class State:
     """The pickled state without its arrays."""
     arrays: tuple[tuple[bytes, ...], ...] = field(repr=False)
     """The blocks of the arrays, deflated."""
-    reply: Words | None
-    """The reply of the last instruction; None if it is not known."""
-    touched: Bytes | None = field(default=None, repr=False)
-    """The words written since the state before, as `np.packbits(dots, axis=1)`; None if not known."""
+    touched: Bytes = field(repr=False)
+    """The words that may have been written since the state before, as `np.packbits(dots, axis=1)`."""
 
     def restore(self, display: Ramtek9300) -> None:
         """Bring a display to this state."""
@@ -44,8 +43,6 @@ class State:
 
     def may_touch(self, window: Window) -> bool:
         """Whether a word of a window within the memory may have been written since the state before."""
-        if self.touched is None:
-            return True
         part = self.touched[window.top : window.bottom + 1, window.left // 8 : window.right // 8 + 1]
         first = window.left % 8
         return bool(np.unpackbits(part, axis=1)[:, first : first + window.width].any())
@@ -55,45 +52,32 @@ class Packer:
     """Packs displays that follow each other."""
 
     def __init__(self) -> None:
-        self._last: list[tuple[bytes, tuple[bytes, ...]]] = []
-        """The arrays of the last state, whole and as deflated blocks."""
+        self._deflated: dict[bytes, bytes] = {}
+        """The deflated blocks of the last state, by the blocks."""
 
-    def pack(
-        self, display: Ramtek9300, number: int, reply: Words | None, touched: Bytes | None = None
-    ) -> State:
-        """The state of a display between two instructions."""
+    def pack(self, display: Ramtek9300, number: int, touched: Dots) -> State:
+        """The state of a display between two instructions; it may have written the (lines, elements) dots."""
         buffers: list[pickle.PickleBuffer] = []
         data = pickle.dumps(display.state(), protocol=5, buffer_callback=buffers.append)
-        arrays = [buffer.raw().tobytes() for buffer in buffers]
-        packed = []
-        for position, array in enumerate(arrays):
-            last, blocks = self._last[position] if position < len(self._last) else (b"", ())
-            if array != last:
-                blocks = tuple(
-                    blocks[index]
-                    if last[first : first + BLOCK] == array[first : first + BLOCK]
-                    else zlib.compress(array[first : first + BLOCK], LEVEL)
-                    for index, first in enumerate(range(0, len(array), BLOCK))
-                )
-            packed.append(blocks)
-        self._last = list(zip(arrays, packed, strict=True))
-        return State(number, data, tuple(packed), reply, touched)
+        raw = [buffer.raw() for buffer in buffers]
+        arrays = [[bytes(array[at : at + BLOCK]) for at in range(0, len(array), BLOCK)] for array in raw]
+        last, self._deflated = self._deflated, {}
+        for block in chain.from_iterable(arrays):
+            if block not in self._deflated:
+                self._deflated[block] = last.get(block) or zlib.compress(block, LEVEL)
+        packed = (tuple(map(self._deflated.__getitem__, blocks)) for blocks in arrays)
+        return State(number, data, tuple(packed), np.packbits(touched, axis=1))
 
 
 def size_of(states: list[State]) -> int:
     """The bytes of states; shared blocks count once."""
     blocks = {id(block): len(block) for state in states for array in state.arrays for block in array}
-    beside = (array for state in states for array in (state.reply, state.touched) if array is not None)
-    return sum(blocks.values()) + sum(len(state.data) for state in states) + sum(a.nbytes for a in beside)
+    return sum(blocks.values()) + sum(len(state.data) + state.touched.nbytes for state in states)
 
 
 def thinned(states: list[State]) -> list[State]:
     """Every second state from the first on, and the last."""
     first, *rest = states
-    joined = []
-    for one, other in zip(rest[::2], rest[1::2], strict=False):
-        if one.touched is None or other.touched is None:
-            joined.append(replace(other, touched=None))
-        else:
-            joined.append(replace(other, touched=one.touched | other.touched))
+    pairs = zip(rest[::2], rest[1::2], strict=False)
+    joined = [replace(other, touched=one.touched | other.touched) for one, other in pairs]
     return [first, *joined, *rest[2 * len(joined) :]]

@@ -23,7 +23,7 @@ class Stream:
 
     def __init__(self, configuration: Configuration = GMR_9300, words: Words = NO_WORDS) -> None:
         self.configuration = configuration
-        self._words = words
+        self._words: Words = NO_WORDS
         self._word_count = 0
         self._ends: Indices = np.zeros(1, np.int64)
         self._count = 0
@@ -57,22 +57,17 @@ class Stream:
         Illegal words that follow illegal words at once belong to the same instruction, whose end moves on.
         """
         begin, extended = int(self._ends[self._count]), self.configuration.extended
-        if words is not self._words:
-            self._words = _with_room(self._words, self._word_count, len(words))
-            self._words[self._word_count : self._word_count + len(words)] = words
+        self._words = _with_room(self._words, self._word_count, len(words))
+        self._words[self._word_count : self._word_count + len(words)] = words
         self._word_count += len(words)
         ends = np.array(lengths(self.words[begin:], extended)[0], np.int64) + begin
         if self._count and len(ends):
             legal = words_that_begin(extended)
-            if not legal[self._words[[self.place(self._count), begin]]].any():
+            if not legal[self._words[[self._ends[self._count - 1], begin]]].any():
                 self._count -= 1
         self._ends = _with_room(self._ends, self._count + 1, len(ends))
         self._ends[self._count + 1 : self._count + 1 + len(ends)] = ends
         self._count += len(ends)
-
-    def place(self, number: int) -> int:
-        """The index of the first word of an instruction."""
-        return int(self._ends[number - 1])
 
     def words_between(self, number: int, end: int) -> Words:
         """The words of the instructions after `number` up to `end`, included."""
@@ -81,7 +76,7 @@ class Stream:
     def item(self, number: int) -> ListingItem:
         """An instruction as `ramtek list` shows it."""
         words = self.words_between(number - 1, number)
-        return item_of(self.place(number), words, self.configuration.extended)
+        return item_of(int(self._ends[number - 1]), words, self.configuration.extended)
 
 
 def _with_room(items: Array, used: int, more: int) -> Array:

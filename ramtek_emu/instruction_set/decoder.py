@@ -22,7 +22,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Booleans, Words
+from ramtek_emu.arrays import Dots, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
 from ramtek_emu.instruction_set.table import (
@@ -49,15 +49,11 @@ class Decoder:
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self.used = 0
-        """How many words of the last call belong to the instructions that it has yielded."""
+        """The place in the words fed last where the instruction yielded last ends."""
         self.is_within_row = False
-        """Whether the illegal words that were yielded last continue those of the call before."""
+        """Whether the instruction yielded last is the rest of a row of illegal words that was fed before."""
         self._extended = configuration.extended
-        self._last_is_illegal = False
         self.clear()
-
-    def __repr__(self) -> str:
-        return f"Decoder(words pending: {self.pending_words})"
 
     @property
     def pending_words(self) -> int:
@@ -69,6 +65,7 @@ class Decoder:
         self.pending = bytearray()
         """The words of an incomplete instruction, as bytes in the machine's order."""
         self._missing = 1
+        self._last_is_illegal = False
 
     def feed(self, words: Words) -> Iterator[Instruction]:
         """The instructions that these words complete, in order; their data are views where possible.
@@ -89,7 +86,7 @@ class Decoder:
             return
         if before:
             words = np.frombuffer(bytes(self.pending) + words.tobytes(), np.uint16)
-            self.clear()
+            self.pending, self._missing = bytearray(), 1
         begin = 0
         ends, missing = lengths(words, self._extended)
         formats = formats_of_words(self._extended)
@@ -228,7 +225,7 @@ def formats_of_words(extended: bool) -> tuple[InstructionFormat, ...]:
 
 
 @lru_cache
-def words_that_begin(extended: bool) -> Booleans:
+def words_that_begin(extended: bool) -> Dots:
     """Whether each of the 65,536 words begins an instruction."""
     return np.array([format is not ILLEGAL for format in formats_of_words(extended)])
 

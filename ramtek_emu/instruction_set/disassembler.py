@@ -23,12 +23,7 @@ from ramtek_emu.arrays import Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import Decoder, instruction_of
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction, encode
-from ramtek_emu.instruction_set.table import (
-    FLAG_OF_NAME,
-    ILLEGAL,
-    OPERANDS,
-    Flags,
-)
+from ramtek_emu.instruction_set.table import FLAG_OF_NAME, ILLEGAL, OPERANDS, Flags
 
 WORDS_PER_LINE: Final = 6
 """The largest number of words on the left of a line."""
@@ -56,21 +51,16 @@ class ListingItem:
     instruction: Instruction | None = None
     note: str = ""
     """Why the words are no instruction."""
-    odd_byte: bytes = b""
 
     def lines(self) -> Iterator[str]:
         """The lines of the listing: words on the left, their meaning on the right."""
-        if self.odd_byte:
-            yield _line(self.place, NO_WORDS, f"byte {self.odd_byte[0]:02X} ; {self.note}")
-            return
         place = self.place
         if self.instruction is None:
-            rest = ((words, f"raw {text} ; {self.note}") for words, text in runs(self.words))
+            texts = runs(self.words) if len(self.words) else [(NO_WORDS, "")]
+            rest = ((words, f"raw {text} ; {self.note}") for words, text in texts)
         else:
-            head, text = (
-                self.words[: len(self.words) - len(self.instruction.data)],
-                head_text(self.instruction),
-            )
+            head = self.words[: len(self.words) - len(self.instruction.data)]
+            text = head_text(self.instruction)
             for first in range(0, len(head), WORDS_PER_LINE):
                 yield _line(place + first, head[first : first + WORDS_PER_LINE], text)
                 text = ""
@@ -84,10 +74,7 @@ class ListingItem:
         """The item in plain values, for JSON."""
         item: dict[str, Any] = {"place": self.place}
         if self.instruction is None:
-            item["note"] = self.note
-            if self.odd_byte:
-                item["byte"] = self.odd_byte[0]
-            return item
+            return item | {"note": self.note}
         format, low_byte = self.instruction.format, self.instruction.low_byte
         item |= {"name": format.name, "meaning": format.meaning}
         item |= {"flags": flag_names(low_byte)} if format.is_normal else {"number": low_byte}
@@ -100,7 +87,7 @@ class ListingItem:
 def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> Iterator[ListingItem]:
     """The items of a stream; its bytes, low byte first, may be cut anywhere into pieces.
 
-    A row of illegal words is one item, even if the pieces cut it.
+    A row of illegal words is one item, even if the pieces cut it. An odd byte at the end is only noted.
     """
     decoder = Decoder(configuration)
     place, odd_byte, row = 0, b"", bytearray()
@@ -120,10 +107,9 @@ def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> I
     if row:
         yield raw(place, row, ILLEGAL_NOTE)
     place += decoder.pending_words
-    if decoder.pending:
-        yield raw(place, decoder.pending, "the stream ends within this instruction")
-    if odd_byte:
-        yield ListingItem(place, NO_WORDS, None, "half a word at the end of the stream", odd_byte)
+    if decoder.pending or odd_byte:
+        whole = "a word" if odd_byte else "this instruction"
+        yield raw(place, decoder.pending, f"the stream ends within {whole}")
 
 
 def raw(end: int, data: bytearray, note: str) -> ListingItem:

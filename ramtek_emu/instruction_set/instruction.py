@@ -6,8 +6,7 @@ True
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -51,31 +50,28 @@ class Instruction:
 
 
 def encode(instruction: Instruction) -> Words:
-    """The words of an instruction."""
+    """The words of an instruction; its low byte says which operands and data follow."""
     format = instruction.format
     if format is ILLEGAL:
         return instruction.data
     head = [format.opcode << 8 | instruction.low_byte]
     if format.is_normal:
-        first, second = flag_words_of(instruction.operands)
-        head += [word for word in (first, second) if word]
+        bits = sum(OPERAND_BITS[name] for name in instruction.operands)
+        first, second = bits & 0xFFFF, bits >> 16
+        for flag, word in ((Flags.OPERANDS_1, first), (Flags.OPERANDS_2, second)):
+            if word:
+                head[0] |= flag
+                head.append(word)
         for operand in operands_named(first, second):
             head.extend(instruction.operands[operand.name])
         if instruction.length is not None:
+            head[0] |= Flags.DATA
             head.append(instruction.length)
     else:
         for name in format.fixed or ():
             head.extend((instruction.length or 0,) if name == "length" else instruction.operands[name])
     words = np.array(head, np.uint16)
     return np.concatenate((words, instruction.data)) if len(instruction.data) else words
-
-
-def flag_words_of(operands: Iterable[str]) -> tuple[int, int]:
-    """The two operand flag words that name these operands."""
-    bits = 0
-    for name in operands:
-        bits |= OPERAND_BITS[name]
-    return bits & 0xFFFF, bits >> 16
 
 
 def normal(
@@ -87,29 +83,20 @@ def normal(
 ) -> Instruction:
     """A normal instruction with these operands; numbers from -32768 to 65535 become 16-bit words."""
     named = {key: operand_words(key, value) for key, value in operands.items() if value is not None}
-    first, second = flag_words_of(named)
-    if first:
-        flags |= Flags.OPERANDS_1
-    if second:
-        flags |= Flags.OPERANDS_2
     if length is None and len(data):
         length = 2 * len(data)
-    if length is not None:
-        flags |= Flags.DATA
-        if not 0 <= length <= MOST_BYTES:
-            raise InstructionError(
-                f"the data of {name} must be 0 to {MOST_BYTES} bytes, not {length}; "
-                "send them in several instructions"
-            )
+    if length is not None and not 0 <= length <= MOST_BYTES:
+        raise InstructionError(
+            f"the data of {name} must be 0 to {MOST_BYTES} bytes, not {length}; "
+            "send them in several instructions"
+        )
     return Instruction(FORMAT_OF_NAME[name], int(flags), named, length, data)
 
 
 def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
     """The words of an operand; InstructionError if their number or range is wrong."""
     if name not in OPERANDS:
-        near = difflib.get_close_matches(name, OPERANDS, n=1)
-        advice = f"did you mean {near[0]}?" if near else "choose one of them"
-        raise InstructionError(f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; {advice}")
+        raise InstructionError(f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; choose one")
     if isinstance(value, np.ndarray):
         value = value.tolist()
     numbers = (value,) if type(value) is int else tuple(value) if isinstance(value, Sequence) else (value,)

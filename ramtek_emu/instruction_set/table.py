@@ -208,55 +208,43 @@ sources give numbers and names. Their executors say more.
 """
 
 NAMES: Final = """
-01+ LOAD load a hard register; 02+ READ read a soft register;
-11 SCRX scroll along the lines; 12 SCRY scroll across the lines; 18+ WKB write to the keyboard;
-19+ RKB read the keyboard; 1A+ SPS sense the status of peripherals; 1B+ LDL load a display list;
-1C+ RDL read a display list; 1D+ CCM call control memory; 1E+ XIM execute instruction memory;
-1F+ LDLRP load a display list, reverse packed; 20+ RDLRP read a display list, reverse packed;
-22+ SELMG select an MCP or a group; 23+ SETDC set the ranges of display classes;
-28+ LOADSO load the origins of subchannels;
-31+ LCCIO load a cursor into the operating point, an index register or the origin;
-32+ CWC center the window at a cursor; 34+ DCVC define the configuration of cursors and video;
-36+ WPP write a plot point; 37+ WPV write a plot vector; 3B+ ALDL allocate a display list;
-3C+ DEDL delete a display list; 3D+ RESCON reset a context; 3E+ WBLK write a block to the keyboard;
-3F+ WBLKRP write a block to the keyboard, reverse packed; 40+ RTC read the coordinates of the tablet;
-41+ CDL call a display list; 42+ RETDL return from a display list; 43+ SDLR set a display-list register;
-44+ DDLR decrement a display-list register; 45+ IDLR increment a display-list register;
-46+ SUBDLR subtract display-list registers; 47+ ADLR add display-list registers;
-48+ LDLR load a display-list register; 49+ STDLR store a display-list register;
-4A+ PLDLR load display-list registers from parameters;
-4B+ JDLR jump if a display-list register fulfills a condition; 4C+ ALPF allocate a font;
-4D+ DEPF delete a font; 4F+ LMPF load several fonts; 50+ PUSHM push the matrix; 51+ POPM pop the matrix;
-52+ SETM set the matrix; 53+ LM load the current matrix; 54+ SM store the current matrix;
-55+ MM multiply matrices; 56+ MMI multiply by an immediate matrix; 57+ IM initialize the matrix;
-58+ SCALE scale the matrix; 59+ TRANS translate the matrix; 5A+ ROTAT rotate the matrix;
-5B+ READM read the matrix; 5C+ ALCON allocate a context; 5D+ DECON delete a context;
-5E+ SCON select a context; 5F+ READAS read the state of allocation;
-60+ RCON read the associations of contexts; 61+ SDP set the parameters of detection; 62+ ED enable detection;
-63+ DD disable detection; 64+ SD suspend detection; 65+ RD resume detection;
-66+ SDD set the data of detection; 67+ SDS SDS; 68+ RDB read the buffer of detection;
-6A+ COPYT copy an image, triggered; 6B+ COMBI combine images; 6C+ COMBT combine images, triggered;
-6E+ ARC1 write arcs, type 1; 6F+ ARC2 write arcs, type 2; 70+ ARC3 write arcs, type 3;
-71+ SLFS set the state of local functions; 72+ SLKF set a local keyboard function;
-73+ CLKF clear a local keyboard function; 74+ SLCF set a local cursor function;
-75+ CLCF clear a local cursor function; 76+ SKES set the echo of the keyboard;
-77+ CKES clear the echo of the keyboard; 7F+ WPI write a packed image; 80+ WIV write image vectors;
-81+ SCW set the window of a cursor; 82+ WRCT write colored text at random places;
-83+ RCSL read a cursor, local; 84+ WCSL write a cursor, local; 85+ DIVDLR divide display-list registers;
-86+ MULDLR multiply display-list registers; 87+ ANDDLR AND of display-list registers;
-88+ ORDLR OR of display-list registers; 89+ XORDLR exclusive OR of display-list registers;
-8A+ WC32 write a conic with 32-bit coefficients; 8B+ STM set the mode of the tablet;
-8C+ RTCS read the coordinates and the status of the tablet; 8D+ WCVU write colored, unlinked vectors
+arcs: 6E+ ARC1, 6F+ ARC2, 70+ ARC3
+conics: 8A+ WC32
+contexts: 3D+ RESCON, 5C+ ALCON, 5D+ DECON, 5E+ SCON, 5F+ READAS, 60+ RCON
+cursors: 31+ LCCIO, 32+ CWC, 34+ DCVC, 81+ SCW, 83+ RCSL, 84+ WCSL
+detection: 61+ SDP, 62+ ED, 63+ DD, 64+ SD, 65+ RD, 66+ SDD, 67+ SDS, 68+ RDB
+display classes: 23+ SETDC
+display lists: 1B+ LDL, 1C+ RDL, 1F+ LDLRP, 20+ RDLRP, 3B+ ALDL, 3C+ DEDL, 41+ CDL, 42+ RETDL
+fonts: 4C+ ALPF, 4D+ DEPF, 4F+ LMPF
+images: 6A+ COPYT, 6B+ COMBI, 6C+ COMBT, 7F+ WPI
+keyboard: 18+ WKB, 19+ RKB, 3E+ WBLK, 3F+ WBLKRP, 76+ SKES, 77+ CKES
+local functions: 71+ SLFS, 72+ SLKF, 73+ CLKF, 74+ SLCF, 75+ CLCF
+matrices: 50+ PUSHM, 51+ POPM, 52+ SETM, 53+ LM, 54+ SM, 55+ MM, 56+ MMI, 57+ IM, 58+ SCALE, 59+ TRANS,
+    5A+ ROTAT, 5B+ READM
+peripherals: 1A+ SPS
+plots: 36+ WPP, 37+ WPV
+processors: 1D+ CCM, 1E+ XIM, 22+ SELMG
+registers: 01+ LOAD, 02+ READ
+registers of display lists: 43+ SDLR, 44+ DDLR, 45+ IDLR, 46+ SUBDLR, 47+ ADLR, 48+ LDLR, 49+ STDLR,
+    4A+ PLDLR, 4B+ JDLR, 85+ DIVDLR, 86+ MULDLR, 87+ ANDDLR, 88+ ORDLR, 89+ XORDLR
+scrolling: 11 SCRX, 12 SCRY
+subchannels: 28+ LOADSO
+tablet: 40+ RTC, 8B+ STM, 8C+ RTCS
+text: 82+ WRCT
+vectors: 80+ WIV, 8D+ WCVU
 """
-"""Opcodes of which only number, name and meaning are known, as in the rows above.
+"""Opcodes of which only numbers and names are known, by subjects; plus signs mean the same as above.
 
 Hardware: NCAR ramtek.h lists them with a few words each, and no client sends them. SDS has a joke there.
 LIN libdoc has a scrolling count, so that SCRX and SCRY belong to the 9300, too.
 """
 
 UNIMPLEMENTED: Final = tuple(
-    InstructionFormat(int(opcode[:2], 16), name, meaning, "NCAR ramtek.h", None, opcode.endswith("+"), True)
-    for opcode, name, meaning in (entry.split(maxsplit=2) for entry in NAMES.strip().split(";"))
+    InstructionFormat(
+        int(opcode[:2], 16), name, f"{subject}, by name only", "NCAR ramtek.h", None, "+" in opcode, True
+    )
+    for subject, names in (line.split(": ") for line in NAMES.strip().replace("\n    ", " ").splitlines())
+    for opcode, name in map(str.split, names.split(", "))
 )
 
 FORMATS: Final = SUBSTANTIATED + UNIMPLEMENTED
@@ -274,5 +262,5 @@ FLAG_OF_NAME: Final = {
     "IX10": Flags.INDEX_2,
     "IX11": Flags.RELATIVE,
 }
-"""The flags by their names in the sources, but those for operands and data."""
+"""The flags of packing, colors and addressing by their names in the sources."""
 FORMAT_OF_NAME: Final = {format.name: format for format in FORMATS}

@@ -90,15 +90,11 @@ def characters() -> Dots:
     return shapes
 
 
-LOADED_ELEMENTS: Final = 8
-LOADED_LINES: Final = 12
-
-
 def initial_loaded_characters() -> Dots:
     """The loaded characters at power-on, (256, 12, 8): the shapes of the ROM, until a host loads others.
 
     Hardware: LIN (twelve rows of a byte each).
     """
-    loaded = np.zeros((256, LOADED_LINES, LOADED_ELEMENTS), np.bool_)
+    loaded = np.zeros((256, 12, 8), np.bool_)
     loaded[:, :CELL_LINES, :CELL_ELEMENTS] = characters()
     return loaded

@@ -63,11 +63,6 @@ class Cursor:
         """Whether the cursor is shown."""
         return bool(self.state & VISIBLE)
 
-    @property
-    def blinks(self) -> bool:
-        """Whether the cursor is shown and hidden in turns."""
-        return bool(self.state & BLINK)
-
 
 class Cursors:
     """The cursors of a display, and the switches of its joystick unit."""
@@ -83,15 +78,8 @@ class Cursors:
         self.shape_changes = 0
         """The number of changes of shapes; it never decreases."""
 
-    def __repr__(self) -> str:
-        visible = sum(cursor.is_visible for cursor in self.all)
-        return f"Cursors({len(self.all)}, {visible} visible, TRACK {'on' if self.track else 'off'})"
-
     def __getitem__(self, number: int) -> Cursor:
         return self.all[number]
-
-    def __contains__(self, number: int) -> bool:
-        return 0 <= number < len(self.all)
 
     def state(self) -> dict[str, Any]:
         """The cursors, the switches, and the cursors of each tracking device as pairs (device, mask)."""
@@ -129,35 +117,18 @@ class Cursors:
         self.all[number].shape[: len(dots)] = dots
         self.shape_changes += 1
 
-    def forget_enter(self) -> None:
-        """Clear the ENTER of every cursor."""
-        for cursor in self.all:
-            cursor.enter = False
-
-    def hide(self) -> None:
-        """Hide every cursor."""
-        for cursor in self.all:
-            cursor.state = 0
-
 
 class Joystick:
-    """A tracking device that a user moves: `display.joystick` in Python, the mouse in a window."""
+    """Tracking device 0, which a user moves: `display.joystick` in Python, the mouse in a window."""
 
-    def __init__(self, cursors: Cursors, elements: int, lines: int, device: int = 0) -> None:
+    def __init__(self, cursors: Cursors, elements: int, lines: int) -> None:
         self._cursors = cursors
         self._limits = elements - 1, lines - 1
-        self._device = device
-
-    def __repr__(self) -> str:
-        element, line = self.position
-        count = len(self.driven)
-        cursors = f"{count} cursor{'' if count == 1 else 's'}"
-        return f"Joystick(device {self._device}, drives {cursors}, element {element}, line {line})"
 
     @property
     def driven(self) -> tuple[Cursor, ...]:
         """The cursors that this device drives."""
-        mask = self._cursors.driven.get(self._device, 0)
+        mask = self._cursors.driven.get(0, 0)
         return tuple(cursor for number, cursor in enumerate(self._cursors.all) if mask >> number & 1)
 
     @property

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ramtek_emu.arrays import Booleans, Dots, Numbers, Words
+from ramtek_emu.arrays import Dots, Numbers, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window, blocks
 
@@ -34,7 +34,6 @@ class FrameBuffer:
     """The picture memory: (lines, elements) words."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
-        self.planes = configuration.planes
         self.window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
         self.written = 0
         """The number of words written since power-on; it never decreases."""
@@ -43,10 +42,8 @@ class FrameBuffer:
         self.words: Words = self._words.view()
         """The words, (lines, elements) uint16; a read-only view that stays current."""
         self.words.flags.writeable = False
-
-    def __repr__(self) -> str:
-        lines, elements = self._words.shape
-        return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
+        self.touched: Dots | None = None
+        """(lines, elements) dots that writes make true, also where words stay the same; None for no dots."""
 
     def state(self) -> dict[str, Any]:
         """The words, (lines, elements) uint16."""
@@ -61,7 +58,7 @@ class FrameBuffer:
         self, window: Window, word: int, enable: WriteEnable = EVERYTHING, dots: Dots | None = None
     ) -> None:
         """Fill a window with a word; with [line, element] `dots`, only pixels whose dot is true."""
-        self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable, dots)
+        self.write_block(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable, dots)
 
     def write_scan(
         self,
@@ -71,64 +68,75 @@ class FrameBuffer:
         words: Words,
         enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
+        pairs: bool = False,
     ) -> Point:
         """Write words along the scan of a window from `start` on; returns the point after the last word.
 
-        With `dots`, only words whose dot is true are written.
+        With `dots`, only words whose dot is true are written. With `pairs`, the words are pixels in pairs.
         """
-        along, runs = order.inner_and_outer(window)
-        if not along * runs:
+        if window.is_empty:
             return start
-        inner, outer = order.entry(window, start)
-        count, rest = divmod(len(words), along)
-        if dots is None and inner == rest == 0 and 0 <= outer < outer + count <= runs:
-            # The common case: whole lines of the window, without going around it.
-            corner = order.corner(window)
-            entered = order.stepped(corner, 0, outer)
-            self.write_block(entered, order, words.reshape(count, along), enable)
-            return order.stepped(corner, 0, (outer + count) % runs)
-        if len(words) <= along * runs:
-            for block in blocks(window, order, start, len(words)):
-                part = slice(block.first, block.first + block.inner * block.outer)
-                shape = block.outer, block.inner
-                chosen = None if dots is None else dots[part].reshape(shape)
-                self.write_block(block.start, order, words[part].reshape(shape), enable, chosen)
-        else:
-            elements, lines = order.places(window, start, len(words))
-            written = slice(None) if dots is None else dots
-            self.write_points(elements[written], lines[written], words[written], enable)
-        return order.after(window, start, len(words))
+        if len(words) > 2 * window.width * window.height:
+            words, dots = self._last_turn(window, order, start, words, enable, dots, pairs)
+        parts, after = blocks(window, order, start, len(words), pairs)
+        for place, shape, part in parts:
+            block_dots = None if dots is None else dots[part].reshape(shape)
+            self.write_block(place, order, words[part].reshape(shape), enable, block_dots)
+        return after
 
-    def read_scan(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
-        """`count` words along the scan of a window from `start` on, and the point after the last word."""
-        size = window.width * window.height
-        words = np.zeros(count, np.uint16)
-        if size and count > size:
-            elements, lines = order.places(window, start, count)
-            inside = inside_of(self.window, elements, lines)
-            words[inside] = self._words[lines[inside], elements[inside]]
-        elif size:
-            for block in blocks(window, order, start, count):
-                out = words[block.first : block.first + block.inner * block.outer]
-                place = order.block_window(block.start, block.inner, block.outer)
-                seen = place.intersection(self.window)
-                if not seen.is_empty:
-                    memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
-                    shaped = out.reshape(block.outer, block.inner)
-                    shaped[part_of(place, seen, order)] = order.oriented(memory)
-        return words, order.after(window, start, count) if size else start
-
-    def write_block(
+    def _last_turn(
         self,
-        start: Point,
+        window: Window,
         order: ScanOrder,
-        block: Words,
-        enable: WriteEnable = EVERYTHING,
-        dots: Dots | None = None,
-    ) -> None:
-        """Write an [outer, inner] block from `start` on; with `dots`, only words whose dot is true."""
-        place = order.block_window(start, block.shape[1], block.shape[0])
-        self._store(place, order, block, enable, dots)
+        start: Point,
+        words: Words,
+        enable: WriteEnable,
+        dots: Dots | None,
+        pairs: bool,
+    ) -> tuple[Words, Dots | None]:
+        """Words and dots with a single turn around the window for all whole turns; counts the others."""
+        first, size = order.words_around(window, start, pairs)
+        count = (len(words) - first) // size
+        if count < 1:
+            return words, dots
+        end = first + count * size
+        dots = np.ones(len(words), np.bool_) if dots is None else dots
+        turns = dots[first:end].reshape(count, size)
+        is_written = turns.any(axis=0)
+        if enable.mask & self._every_plane:
+            runs = order.inner_and_outer(window)[1]
+            place = order.block_window(order.corner(window), runs, size // runs)
+            seen = place.intersection(self.window).intersection(enable.window)
+            overwritten = (turns.sum(axis=0) - is_written).reshape(runs, -1)
+            self.written += int(overwritten[part_of(place, seen, order)].sum())
+        last = words[first:end].reshape(count, size)[count - 1 - turns[::-1].argmax(axis=0), np.arange(size)]
+        return (
+            np.concatenate((words[:first], last, words[end:])),
+            np.concatenate((dots[:first], is_written, dots[end:])),
+        )
+
+    def read_scan(
+        self, window: Window, order: ScanOrder, start: Point, count: int, pairs: bool = False
+    ) -> tuple[Words, Point]:
+        """`count` words along the scan of a window from `start` on, and the point after the last word.
+
+        With `pairs`, the words are pixels in pairs.
+        """
+        if window.is_empty:
+            return np.zeros(count, np.uint16), start
+        # From the corner on, the words repeat with every turn around the window: read the first turn alone.
+        first, size = order.words_around(window, start, pairs)
+        repeated = max(0, count - first - size) // size * size
+        words = np.zeros(count - repeated, np.uint16)
+        parts, after = blocks(window, order, start, len(words), pairs)
+        for place, shape, part in parts:
+            seen = place.intersection(self.window)
+            if not seen.is_empty:
+                memory = self._words[seen.top : seen.bottom + 1, seen.left : seen.right + 1]
+                words[part].reshape(shape)[part_of(place, seen, order)] = order.oriented(memory)
+        if repeated:
+            words = np.concatenate((words[:first], np.resize(words[first : first + size], count - first)))
+        return words, after
 
     def write_points(
         self,
@@ -142,11 +150,14 @@ class FrameBuffer:
         mask = enable.mask & self._every_plane
         if inside.is_empty or not mask or not len(elements):
             return
-        seen = inside_of(inside, elements, lines)
+        seen = (elements >= inside.left) & (elements <= inside.right)
+        seen &= (lines >= inside.top) & (lines <= inside.bottom)
         places = lines * self._words.shape[1] + elements
         if not seen.all():
             places = places[seen]
             words = words if isinstance(words, int) else words[seen]
+        if self.touched is not None:
+            self.touched.reshape(-1)[places] = True
         memory = self._words.reshape(-1)
         masked = np.uint16(words & mask) if isinstance(words, int) else words & np.uint16(mask)
         if mask != self._every_plane:
@@ -154,14 +165,18 @@ class FrameBuffer:
         memory[places] = masked
         self.written += len(places)
 
-    def _store(
+    def write_block(
         self,
         place: Window,
         order: ScanOrder,
         block: Words | np.uint16,
-        enable: WriteEnable,
+        enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
     ) -> None:
+        """Write an [outer, inner] block, or a single word everywhere, to a window of its size.
+
+        With [outer, inner] `dots`, only words whose dot is true are written.
+        """
         clipped = place.intersection(self.window).intersection(enable.window)
         mask = enable.mask & self._every_plane
         if clipped.is_empty or not mask:
@@ -173,6 +188,9 @@ class FrameBuffer:
             part = part_of(place, clipped, order)
             block = block[part] if isinstance(block, np.ndarray) else block
             dots = None if dots is None else dots[part]
+        if self.touched is not None:
+            touched = self.touched[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
+            order.oriented(touched)[...] |= True if dots is None else dots
         if mask == self._every_plane and dots is None:
             # The common case: one pass that copies the words without the bits beyond the planes.
             if isinstance(block, np.ndarray):
@@ -186,13 +204,6 @@ class FrameBuffer:
             mixed = (memory & np.uint16(~mask & 0xFFFF)) | mixed
         np.copyto(memory, mixed, where=True if dots is None else dots)
         self.written += memory.size if dots is None else int(np.count_nonzero(dots))
-
-
-def inside_of(window: Window, elements: Numbers, lines: Numbers) -> Booleans:
-    """Whether each point lies inside a window."""
-    inside = (elements >= window.left) & (elements <= window.right)
-    inside &= (lines >= window.top) & (lines <= window.bottom)
-    return inside
 
 
 def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, slice]:

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ramtek_emu.arrays import Bytes, Colors, PackedColors, Words
+from ramtek_emu.arrays import Colors, Dots, PackedColors, Words
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 
@@ -33,18 +33,14 @@ class LookupTable:
         """The number of words of entries written since power-on; it never decreases."""
         self._last_range = 0, 0, 0
         """The last range written: the count `written` before it, its first entry, and the entry after it."""
+        self.touched: Dots | None = None
+        """(entries,) dots that writes make true, also where colors stay the same; None for no dots."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
         # In this byte order, the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
-        self._unused: Bytes = self._packed.view(np.uint8)[3::4]
-        """The byte of each packed entry that holds no color."""
         self.packed: PackedColors = self._packed.view()
         """The entries as 0x00RRGGBB, (entries,) uint32; a read-only view that stays current."""
         self.packed.flags.writeable = False
-
-    def __repr__(self) -> str:
-        format = self.entry_format.name
-        return f"LookupTable({self.size} entries, {format}, {self.written} words written)"
 
     def state(self) -> dict[str, Any]:
         """The entries as 0x00RRGGBB, (entries,) uint32, and the address counter."""
@@ -107,11 +103,13 @@ class LookupTable:
         # Measured with cold caches: masking the words while they are written takes 1.3 times as long.
         self._halves[first : first + len(words)] = words
         first_entry, end_entry = first >> 1, first + len(words) + 1 >> 1
-        self._unused[first_entry:end_entry] = 0
+        self._packed[first_entry:end_entry] &= 0xFFFFFF
         self._note(first_entry, end_entry, len(words))
 
     def _note(self, first: int, end: int, words: int) -> None:
         """Count the words written to a range of entries, and remember the range."""
+        if words and self.touched is not None:
+            self.touched[first:end] = True
         # Writing the same range repeatedly, as while a color is dragged, counts as one write.
         if words and self._last_range[1:] != (first, end):
             self._last_range = self.written, first, end

@@ -105,11 +105,6 @@ class Parameters:
         """Set the values of a state."""
         vars(self).update(state)
 
-    def operand(self, name: str) -> tuple[int, ...]:
-        """The words of an operand."""
-        value = getattr(self, name)
-        return tuple(number & 0xFFFF for number in (value if isinstance(value, tuple) else (value,)))
-
     @property
     def order(self) -> ScanOrder:
         """The current scan order.
@@ -131,12 +126,7 @@ class Parameters:
 
         Hardware: LIN, wtr() sends C0h where it means the operating point.
         """
-        addressing = flags & Flags.ADDRESSING
-        if addressing == Flags.RELATIVE:
-            return self.start
-        if addressing == Flags.INDEX_1:
-            return self.index_1
-        return self.index_2 if addressing == Flags.INDEX_2 else ORIGIN
+        return (ORIGIN, self.index_1, self.index_2, self.start)[(flags & Flags.ADDRESSING) >> 6]
 
     def take(self, operands: Mapping[str, tuple[int, ...]], flags: int) -> None:
         """Set the operands of a normal instruction.

@@ -23,12 +23,9 @@ point is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
-import numpy as np
-
-from ramtek_emu.arrays import Numbers, Raster, Scalar
+from ramtek_emu.arrays import Raster, Scalar
 
 
 class Point(NamedTuple):
@@ -108,8 +105,8 @@ class ScanOrder(NamedTuple):
         down = window.bottom - point.line if self.upward else point.line - window.top
         return (down, across) if self.vertical else (across, down)
 
-    def stepped(self, corner: Point, inner: Any, outer: Any) -> Point:
-        """The point at these steps from the corner, or the places: the inverse of `steps`."""
+    def stepped(self, corner: Point, inner: int, outer: int) -> Point:
+        """The point at these steps from the corner: the inverse of `steps`."""
         across, down = (outer, inner) if self.vertical else (inner, outer)
         return Point(
             corner.element + (-across if self.leftward else across),
@@ -124,30 +121,15 @@ class ScanOrder(NamedTuple):
             inner, outer = 0, outer + 1
         return inner, 0 if outer >= runs else outer
 
-    def after(self, window: Window, start: Point, count: int) -> Point:
-        """The point after `count` words from `start` on."""
-        if not count:
-            return start
+    def words_around(self, window: Window, start: Point, pairs: bool) -> tuple[int, int]:
+        """How many words the scan takes from `start` to the corner, and around the window from there."""
         inner, outer = self.entry(window, start)
         along, runs = self.inner_and_outer(window)
-        more, rest = divmod(count - (along - inner), along)
-        inner, outer = (inner + count, outer) if more < 0 else (rest, outer + 1 + more)
-        return self.stepped(self.corner(window), inner, outer % runs if outer >= 0 else outer)
+        run = whole(along, pairs)
+        return whole(along - inner, pairs) + (runs - outer - 1) * run, run * runs
 
-    def places(self, window: Window, start: Point, count: int) -> tuple[Numbers, Numbers]:
-        """The elements and the lines of `count` words from `start` on."""
-        inner, outer = self.entry(window, start)
-        along, runs = self.inner_and_outer(window)
-        more, inners = np.divmod(np.arange(count) - (along - inner), along)
-        in_first = more < 0
-        inners[in_first] = inner + np.flatnonzero(in_first)
-        outers = outer + np.where(in_first, 0, 1 + more)
-        outers = np.where(outers < 0, outers, outers % runs)
-        places: tuple[Any, Any] = self.stepped(self.corner(window), inners, outers)
-        return places
-
-    def block_window(self, start: Point, inner: int, outer: int) -> Window:
-        """The window of a block of inner x outer words with its first word at `start`."""
+    def block_window(self, start: Point, outer: int, inner: int) -> Window:
+        """The window of an [outer, inner] block with its first word at `start`."""
         width, height = (outer, inner) if self.vertical else (inner, outer)
         left = start.element - width + 1 if self.leftward else start.element
         top = start.line - height + 1 if self.upward else start.line
@@ -166,49 +148,34 @@ SCAN_ORDERS: Final = (
 )
 
 
-class ScanBlock(NamedTuple):
-    """Consecutive words that fill a rectangle: the first point, the sizes, the index of the first word."""
-
-    start: Point
-    inner: int
-    outer: int
-    first: int
+def whole(words: int, pairs: bool) -> int:
+    """The number of words, or with `pairs` of pixels in whole pairs, that so many words of a run take."""
+    return words + words % 2 if pairs else words
 
 
-def paired_parts(
-    window: Window, order: ScanOrder, start: Point, count: int
-) -> Iterator[tuple[Window, Point, int]]:
-    """Yields the parts, at most two, of a scan of `count` pixels in pairs: window, first point, pixels.
+def blocks(
+    window: Window, order: ScanOrder, start: Point, count: int, pairs: bool = False
+) -> tuple[list[tuple[Window, tuple[int, int], slice]], Point]:
+    """The rectangles that `count` words from `start` on fill, and the point after the last word.
 
-    The window of a part is one step wider than `window` if its runs would hold an odd number of pixels.
+    A rectangle is its window, its (outer, inner) shape, and the slice of its words. There are at most
+    three for each time around the window. With `pairs`, the words are pixels in pairs.
     """
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
     inner, outer = order.entry(window, start)
-    begin = order.stepped(corner, inner, outer)
-    first_window = order.block_window(corner, along + (along - inner) % 2, runs)
-    next_window = order.block_window(corner, along + along % 2, runs)
-    first = count if first_window == next_window else min(count, along - inner + (along - inner) % 2)
-    yield first_window, begin, first
-    if first < count:
-        yield next_window, order.after(first_window, begin, first), count - first
-
-
-def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[ScanBlock]:
-    """Yields the rectangles that `count` words from `start` on fill, at most three for each time around."""
-    along, runs = order.inner_and_outer(window)
-    corner = order.corner(window)
-    inner, outer = order.entry(window, start)
+    parts = []
     done = 0
     while done < count:
-        left = count - done
         point = order.stepped(corner, inner, outer)
-        if inner or left < along:
-            block = ScanBlock(point, min(along - inner, left), 1, done)
-        else:
-            block = ScanBlock(point, along, min(left // along, runs - outer), done)
-        yield block
-        done += block.inner * block.outer
-        inner, outer = 0, outer + block.outer
-        if outer == runs:
-            outer = 0
+        left, room = count - done, whole(along - inner, pairs)
+        whole_runs = left // room if inner == 0 else 0
+        shape = (min(whole_runs, runs - outer), room) if whole_runs else (1, min(left, room))
+        size = shape[0] * shape[1]
+        parts.append((order.block_window(point, *shape), shape, slice(done, done + size)))
+        done += size
+        inner += shape[1]
+        if shape[1] == room:
+            inner, outer = 0, outer + shape[0]
+            outer = 0 if outer == runs else outer
+    return parts, order.stepped(corner, inner, outer) if count else start

@@ -15,8 +15,9 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final, NamedTuple, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 
@@ -28,8 +29,8 @@ import pygame
 
 from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.errors import NoScreenError, escaped
+from ramtek_emu.monitor.boxes import PageBox
 from ramtek_emu.monitor.input_queue import Close, InputQueue, Key, Pointer
-from ramtek_emu.monitor.overlay import Overlay
 from ramtek_emu.video.scan_out import Run
 
 KEY_DELAY: Final = 400
@@ -82,15 +83,11 @@ class FieldSource(Protocol):
     def stamp(self) -> Any:
         """A value that changes whenever a pixel may have changed."""
 
-    def lines_changed_since(self, last: Any) -> tuple[Run, ...]:
-        """The lines that may have changed since the stamp `last`, as runs from the top; all for None."""
-        ...
+    def scan_out_changes_into(self, pixels: PackedColors, last: Any) -> tuple[Any, tuple[Run, ...]]:
+        """Bring pixels with the stamp `last` up to date; None for any pixels.
 
-    def scan_out_changes_into(self, pixels: PackedColors, last: Any) -> Any:
-        """Bring pixels with the stamp `last` up to date; returns their new stamp. None writes all pixels."""
-
-    def table(self) -> PackedColors:
-        """The colors of all words, 0x00RRGGBB."""
+        Returns their new stamp, and the lines that have changed as runs from the top.
+        """
         ...
 
     def field(self) -> Colors:
@@ -109,7 +106,7 @@ class Glass:
         self._window_size = size
         self._redrawn = 0
         """The number of times that the window lost the field."""
-        self._shown: tuple[pygame.Surface, Viewport, Any] | None = None
+        self._shown: tuple[pygame.Surface, PageBox, Any] | None = None
         """The surface of the last field, its place in the window, and the stamp of that field."""
 
     @property
@@ -201,25 +198,25 @@ class Glass:
         self._redrawn += 1
         self._shown = None
 
-    def show(self, source: FieldSource, overlay: Overlay, title: str, hides_mouse: bool) -> None:
-        """Show the current field with its overlay, and show or hide the pointer of the mouse."""
+    def show(
+        self, source: FieldSource, draw_over: Callable[[PackedColors], None] | None, hides_mouse: bool
+    ) -> None:
+        """Show the current field, with something drawn over it, and show or hide the pointer of the mouse."""
         pygame.mouse.set_visible(not hides_mouse)
         screen = pygame.display.get_surface()
         place = viewport(self._size, screen.get_size(), self.fit)
         is_direct = screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS
         surface = screen if is_direct else self._field
         last = self._shown[2] if self._shown is not None and self._shown[:2] == (surface, place) else None
-        has_overlay = any(overlay.stamp)
-        changed = source.lines_changed_since(None if has_overlay else last)
         # The surface is locked while the array exists.
         pixels = np.asarray(surface.get_view("2")).T
-        stamp = source.scan_out_changes_into(pixels, last)
-        if has_overlay:
-            overlay.draw(pixels, source.table(), title)
+        stamp, changed = source.scan_out_changes_into(pixels, last)
+        if draw_over is not None:
+            draw_over(pixels)
         del pixels
-        self._shown = None if has_overlay else (surface, place, stamp)
+        self._shown = (surface, place, stamp) if draw_over is None else None
         is_blurred = self._is_blurred(place)
-        if last is None or has_overlay or is_blurred:
+        if last is None or draw_over is not None or is_blurred:
             if not is_direct:
                 screen.fill((0, 0, 0))
                 self._enlarge(screen, place, (0, self._size[1]))
@@ -232,11 +229,11 @@ class Glass:
                 [enlarged(run, place, self._size).clip(screen.get_rect()) for run in changed]
             )
 
-    def _is_blurred(self, place: Viewport) -> bool:
+    def _is_blurred(self, place: PageBox) -> bool:
         """Whether the field is not shown at a whole multiple."""
         return (self.fit and place[2:] != self._size) or place.width < self._size[0]
 
-    def _enlarge(self, screen: pygame.Surface, place: Viewport, run: Run) -> None:
+    def _enlarge(self, screen: pygame.Surface, place: PageBox, run: Run) -> None:
         """Copy a run of lines of the field, enlarged, to their place in the window."""
         lines = self._field.subsurface((0, run[0], self._size[0], run[1] - run[0]))
         target = enlarged(run, place, self._size)
@@ -287,32 +284,23 @@ class Glass:
         element, line = pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)
         down = pygame.key.get_mods()
         shift, control = bool(down & pygame.KMOD_SHIFT), bool(down & CONTROL)
-        return Pointer(element, line, False, action, button, steps, shift, control)
+        return Pointer(element, line, action, button, steps, shift, control)
 
 
-class Viewport(NamedTuple):
-    """The rectangle of the window that shows the field: left, top, width and height in pixels."""
-
-    left: int
-    top: int
-    width: int
-    height: int
-
-
-def viewport(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> Viewport:
+def viewport(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> PageBox:
     """The place of a (width, height) field in a (width, height) window; a whole multiple unless `fit`.
 
     A window that is smaller than the field shows the whole field, as with `fit`.
 
     >>> viewport((640, 480), (1400, 1000))
-    Viewport(left=60, top=20, width=1280, height=960)
+    PageBox(left=60, top=20, width=1280, height=960)
     """
     ratio = min(window[0] / field[0], window[1] / field[1])
     if fit or ratio < 1:
         width, height = (max(1, int(size * ratio + 0.5)) for size in field)
     else:
         width, height = field[0] * int(ratio), field[1] * int(ratio)
-    return Viewport((window[0] - width) // 2, (window[1] - height) // 2, width, height)
+    return PageBox((window[0] - width) // 2, (window[1] - height) // 2, width, height)
 
 
 def pixel_under(
@@ -329,7 +317,7 @@ def pixel_under(
     return min(max(element, 0), field[0] - 1), min(max(line, 0), field[1] - 1)
 
 
-def enlarged(run: Run, place: Viewport, size: tuple[int, int]) -> pygame.Rect:
+def enlarged(run: Run, place: PageBox, size: tuple[int, int]) -> pygame.Rect:
     """The rectangle of the window that shows a run of lines; `size` is the field's (elements, lines)."""
     top, end = (place.top + line * place.height // size[1] for line in run)
     return pygame.Rect(place.left, top, place.width, end - top)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import deque
 from pathlib import Path
-from typing import Final, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 
 class Key(NamedTuple):
@@ -42,8 +42,6 @@ class Pointer(NamedTuple):
 
     element: int
     line: int
-    enter: bool
-    """Whether the left button is down; set when the input is handled."""
     action: str
     """"move", "press", "release", "wheel up" or "wheel down"."""
     button: int = 0
@@ -61,9 +59,6 @@ class Close(NamedTuple):
 
 Input: TypeAlias = Key | Release | Pointer | Path | Close
 """An input; a path is a file that was dropped on the window."""
-
-MOVEMENTS: Final = frozenset(("move", "wheel up", "wheel down"))
-"""Actions of the mouse that are merged if several wait in a row."""
 
 
 class InputQueue:
@@ -123,15 +118,11 @@ class InputQueue:
             self._down.add(added.button)
         elif added.action == "release":
             self._down.discard(added.button)
-        last = self._waiting[-1] if self._waiting else None
-        if not isinstance(last, Pointer) or movement(last) != movement(added) or movement(added) is None:
-            return added
-        self._waiting.pop()
-        return added if added.action == "move" else added._replace(steps=last.steps + added.steps)
-
-
-def movement(pointer: Pointer) -> tuple[str, bool, bool] | None:
-    """The action and the modifiers of a movement; None if the action is no movement."""
-    if pointer.action not in MOVEMENTS:
-        return None
-    return pointer.action, pointer.shift, pointer.control
+        elif (
+            self._waiting
+            and isinstance(last := self._waiting[-1], Pointer)
+            and last._replace(element=added.element, line=added.line, steps=added.steps) == added
+        ):
+            self._waiting.pop()
+            return added if added.action == "move" else added._replace(steps=last.steps + added.steps)
+        return added

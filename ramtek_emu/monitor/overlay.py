@@ -22,13 +22,13 @@ PAGES: Final = {"f1": "help", "f4": "entries"}
 
 KEYS: Final = (
     ("F1", "this help, and back"),
-    ("F2", "show all words in gray, in another gray, as the display does"),
-    ("F3", "record the fields as a film; again: end it"),
+    ("F2", "show words in gray, another gray, or colors"),
+    ("F3", "begin to record a film, or end it"),
     ("F4", "the entries of the lookup table, and back"),
-    ("F10", "fill the window, or show whole multiples"),
+    ("F10", "fill the window, or show a whole multiple"),
     ("F11, Alt+Enter", "full screen, and back"),
     ("F12", "save a numbered screenshot of the field"),
-    ("Esc", "leave full screen, then a page"),
+    ("Esc", "leave full screen, or close the page"),
     ("Ctrl+Q", "close the window"),
     ("mouse", "the joystick: moves the cursors"),
     ("left button", "ENTER"),

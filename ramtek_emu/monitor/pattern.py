@@ -1,7 +1,7 @@
 """The test pattern: a stream of instructions for a display of any configuration.
 
-It shows color bars, ramps through gray, red, green, blue and the hues, a grid to check the raster, circles to
-check the geometry, and the characters.
+It shows color bars, ramps through gray, the hues, red, green and blue, sixteen steps of gray, a grid to check
+the raster, circles to check the geometry, and the characters.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu import instructions
-from ramtek_emu.arrays import Colors, Indices, Words
+from ramtek_emu.arrays import Colors, Words
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 BARS: Final = (
@@ -26,55 +26,40 @@ LABEL: Final = 11
 """The word of letters, circles and the border."""
 SHADE: Final = 12
 """The word behind the letters."""
-
-
-FULL: Final = {
-    "gray": (1, 1, 1), "red": (1, 0, 0), "green": (0, 1, 0), "blue": (0, 0, 1), "hue": (0, 4, 2),
-}  # fmt: skip
-"""The components of the brightest color of a ramp; of the hues, where they begin, in sixths of the circle."""
+FIRST_RAMP: Final = 3
+"""The eighth of the words that is the first ramp; the last four eighths are the other ramps."""
 
 
 def pattern(configuration: Configuration = GMR_9300) -> Words:
     """The pattern as a stream of words for a host port."""
-    parts = [instructions.reset(), load(configuration), instructions.write_image(picture(configuration))]
-    parts += [circle_outline(configuration), labels(configuration)]
-    return instructions.concatenate(*parts)
+    short = configuration.entry_format is EntryFormat.WORD_12
+    return instructions.concatenate(
+        instructions.reset(),
+        instructions.load_entries(0, colors(configuration), configuration.entries, short),
+        instructions.park_table(),
+        instructions.write_image(picture(configuration)),
+        circle_outline(configuration),
+        labels(configuration),
+    )
 
 
-def words_in_use(configuration: Configuration) -> int:
-    """The number of words that select different entries."""
-    return min(configuration.entries, configuration.largest_word + 1)
-
-
-def ramp_words(configuration: Configuration) -> dict[str, Indices]:
-    """The words of the ramps: a quarter of the table for gray, and an eighth each for the other colors."""
-    total = words_in_use(configuration)
-    starts = {"gray": 2, "red": 4, "green": 5, "blue": 6, "hue": 7}
-    return {
-        name: np.arange(start * total // 8, (start + (2 if name == "gray" else 1)) * total // 8)
-        for name, start in starts.items()
-    }
+def eighth(configuration: Configuration) -> int:
+    """An eighth of the number of words that select different entries."""
+    return min(configuration.entries, configuration.largest_word + 1) // 8
 
 
 def colors(configuration: Configuration) -> Colors:
-    """The entries of the pattern, (words in use, 3)."""
-    table = np.zeros((words_in_use(configuration), 3), np.uint8)
+    """The entries of the pattern, (words in use, 3): the bars, and ramps of an eighth of the words each."""
+    count = eighth(configuration)
+    rising = np.linspace(0, 1, count)[:, np.newaxis]
+    turn = np.arange(count)[:, np.newaxis] / count * 6
+    hues = np.clip(np.abs(np.add(turn, (0, 4, 2)) % 6 - 3) - 1, 0, 1)
+    ramps = rising * (1, 1, 1), hues, rising * (1, 0, 0), rising * (0, 1, 0), rising * (0, 0, 1)
+    table = np.zeros((8 * count, 3), np.uint8)
+    table[FIRST_RAMP * count :] = (np.concatenate(ramps) * 255).round()
     table[FIRST_BAR : FIRST_BAR + len(BARS)] = BARS
     table[[GROUND, GRID, LABEL, SHADE]] = (26, 30, 38), (66, 76, 92), (255, 255, 255), (12, 14, 18)
-    for name, words in ramp_words(configuration).items():
-        turn = np.arange(len(words)) / len(words) * 6
-        height = np.linspace(0, 1, len(words))[:, np.newaxis] * FULL[name]
-        if name == "hue":
-            height = np.clip(np.abs((turn[:, np.newaxis] + FULL[name]) % 6 - 3) - 1, 0, 1)
-        table[words] = (height * 255).round()
     return table
-
-
-def load(configuration: Configuration) -> Words:
-    """The instructions that load the entries, in the configuration's format."""
-    short = configuration.entry_format is EntryFormat.WORD_12
-    loaded = instructions.load_entries(0, colors(configuration), configuration.entries, short)
-    return instructions.concatenate(loaded, instructions.park_table())
 
 
 def disc(configuration: Configuration) -> tuple[int, int, int]:
@@ -86,29 +71,22 @@ def disc(configuration: Configuration) -> tuple[int, int, int]:
 def picture(configuration: Configuration) -> Words:
     """The words of background, grid and disc, (lines, elements)."""
     width, height = configuration.shown_elements, configuration.shown_lines
-    center, middle_line, radius = disc(configuration)
-    words = np.full((height, width), GROUND, np.uint16)
-    step = max(2, min(width, height) // 12)
-    words[middle_line % step :: step] = GRID
-    words[:, center % step :: step] = GRID
-    words[[0, -1]] = words[:, [0, -1]] = LABEL
+    center, middle, radius = disc(configuration)
+    lines, elements = np.arange(height)[:, np.newaxis] - middle, np.arange(width) - center
 
-    ramps = ramp_words(configuration)
-    edges = [-12, -4, -1, 2, 4, 6, 8, 12]
-    across = np.arange(width) - (center - radius)
-    filled = np.zeros_like(words)
-    bars = FIRST_BAR + np.clip(across * len(BARS) // (2 * radius), 0, len(BARS) - 1)
-    rows: list[Indices] = [bars]
-    for name in ("gray", "hue", "red", "green", "blue"):
-        place = np.clip(across * len(ramps[name]) // (2 * radius), 0, len(ramps[name]) - 1)
-        rows.append(ramps[name][place])
-    # Show sixteen steps of gray at the bottom; they should be clearly distinct.
-    rows.append(ramps["gray"][np.clip(across * 16 // (2 * radius), 0, 15) * (len(ramps["gray"]) - 1) // 15])
-    for row, first, last in zip(rows, edges[:-1], edges[1:], strict=True):
-        filled[middle_line + first * radius // 12 : middle_line + last * radius // 12] = row
-    lines, elements = np.ogrid[:height, :width]
-    inside = (lines - middle_line) ** 2 + (elements - center) ** 2 < radius * radius
-    words[inside] = filled[inside]
+    # Fill the disc with rows: bars, ramps, and steps of gray, which should be clearly distinct.
+    count, across = eighth(configuration), np.clip(elements / (2 * radius) + 0.5, 0, 0.9999)
+    ramps = [FIRST_RAMP * count + (number + across) * count for number in range(5)]
+    steps = FIRST_RAMP * count + (across * 16).astype(int) * (count - 1) / 15 + 0.5
+    rows = np.array([FIRST_BAR + across * len(BARS), *ramps, steps]).astype(np.uint16)
+    ends = np.array([-4, -1, 2, 4, 6, 8]) * radius // 12
+    filled = rows[np.searchsorted(ends, lines[:, 0], side="right")]
+
+    step = max(2, min(width, height) // 12)
+    is_grid = (lines % step == 0) | (elements % step == 0)
+    is_inside = lines**2 + elements**2 < radius**2
+    words = np.where(is_inside, filled, np.where(is_grid, GRID, GROUND)).astype(np.uint16)
+    words[[0, -1]] = words[:, [0, -1]] = LABEL
     return words
 
 

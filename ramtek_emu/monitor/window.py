@@ -98,11 +98,8 @@ class Monitor:
         self.input = InputQueue()
         self.overlay = Overlay()
         """The page and the message over the field."""
-        self._enter = False
         self._film: TimedFilm | None = None
-        """The film that is recorded, or that could not be saved."""
-        self._closes_film = False
-        """Whether the user knows that closing the window saves the film elsewhere."""
+        """The film that is recorded."""
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
@@ -156,7 +153,7 @@ class Monitor:
 
     def _set_title(self, message: str = "") -> None:
         """Show the caption, whether a film is recorded, and a message in the title bar."""
-        recording = "" if self._film is None else "not saved" if self._film.has_ended else "recording"
+        recording = "recording" if self._film is not None else ""
         self._glass.set_title(" - ".join(part for part in (self._caption, recording, message) if part))
 
     def open(self) -> None:
@@ -165,22 +162,10 @@ class Monitor:
         self._set_title()
 
     def close(self) -> None:
-        """Close the window without asking. A film is saved, and a message on stderr has its path.
-
-        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files, or
-        else to the home folder.
-        """
+        """Close the window without asking. A film is saved, and a message on stderr has its path."""
         self._glass.close()
-        film, self._film = self._film, None
-        if film is None:
-            return
-        for folder in (self.screenshots, Path(tempfile.gettempdir()), Path.home()):
-            try:
-                report(self._save_film(film, folder))
-                return
-            except RamtekError as refusal:
-                report(str(refusal))
-        report("the film is lost: no folder could take it")
+        if self._film is not None:
+            report(self._end_film(self._film))
 
     def _to_be_shown(self) -> tuple[object, ...]:
         return self.source.stamp, self._glass.stamp, self.overlay.stamp
@@ -190,13 +175,16 @@ class Monitor:
         self.overlay.message = message if self.full_screen else ""
         self._set_title(message)
 
-    def run(self) -> None:
-        """Keep the window open until it is closed; open it first if it is not."""
+    def run(self, is_busy: Callable[[], bool] = lambda: False) -> None:
+        """Keep the window open until it is closed; open it first if it is not.
+
+        While `is_busy()` is true, ticks follow each other without waiting for input.
+        """
         if not self.is_open:
             self.open()
         try:
             while self.is_open:
-                self.step(TICK_MILLISECONDS)
+                self.step(0 if is_busy() else TICK_MILLISECONDS)
         finally:
             self.close()
 
@@ -224,11 +212,13 @@ class Monitor:
         # Hide the mouse pointer while a cursor of the display follows the mouse.
         driven = self.display.joystick.driven if self._source is None else ()
         hides_mouse = any(cursor.is_visible for cursor in driven)
-        self._glass.show(self.source, self.overlay, self._caption, hides_mouse)
-        if self._film is not None and not self._film.has_ended:
+        table = self.display.scan_out.table()
+        draw_over = partial(self.overlay.draw, colors=table, title=self._caption)
+        self._glass.show(self.source, draw_over if any(self.overlay.stamp) else None, hides_mouse)
+        if self._film is not None:
             self._film.show(self.source.field(), time.monotonic())
             if self._film.is_full:
-                self._tell_of_film(self._film, "the film is full: ")
+                self.tell(f"the film is full: {self._end_film(self._film)}")
 
     def toggle_full_screen(self) -> None:
         """Switch to full screen, or back to a window of the previous size."""
@@ -240,10 +230,6 @@ class Monitor:
         self._glass.fit = not self._glass.fit
         self.tell("the picture fills the window" if self.fit else "the picture at a whole multiple")
 
-    def turn_table(self) -> None:
-        """Show the words through the next table of grays, or again through the table of the display."""
-        self.tell(turned(self._display.scan_out))
-
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
         from ramtek_emu.png import save_numbered
@@ -253,32 +239,33 @@ class Monitor:
     def toggle_recording(self) -> None:
         """Begin a film with the field that is shown; or end it, save it, and show its path."""
         if self._film is not None:
-            self._tell_of_film(self._film)
+            self.tell(self._end_film(self._film))
             return
         from ramtek_emu.films import TimedFilm
 
         self._film = TimedFilm(self.source.field(), time.monotonic())
-        self._closes_film = False
         # A program that gets messages would draw this message into the film.
         self.show_message("F3 ends it")
 
-    def _tell_of_film(self, film: TimedFilm, reason: str = "") -> None:
-        """End and save the film, and show its path. A film that cannot be saved is not lost."""
-        try:
-            self.tell(reason + self._save_film(film, self.screenshots))
-        except RamtekError as refusal:
-            self.tell(f"{refusal}; F3 tries again")
+    def _end_film(self, film: TimedFilm) -> str:
+        """End and save the film under the next free number; returns a sentence with its path.
 
-    def _save_film(self, film: TimedFilm, folder: Path) -> str:
-        """End the film, and save it under the next free number; returns a sentence with its path.
-
-        Raises OutputError or WriteError.
+        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files, or
+        else to the home folder.
         """
+        from ramtek_emu.films import FILM
         from ramtek_emu.writing import write_numbered
 
-        path = write_numbered(film.end(time.monotonic()), folder, self.file_name, ".apng")
         self._film = None
-        return f"saved {path}, {film.fields:,} {'field' if film.fields == 1 else 'fields'}"
+        fields, data, reason = film.fields, film.end(time.monotonic()), ""
+        for folder in (self.screenshots, Path(tempfile.gettempdir()), Path.home()):
+            try:
+                path = write_numbered(data, folder, self.file_name, FILM)
+            except RamtekError as refusal:
+                reason = reason or f"{refusal}; "
+                continue
+            return f"{reason}saved {path}, {fields:,} {'field' if fields == 1 else 'fields'}"
+        return f"{reason}the film is lost: no folder could take it"
 
     def copy(self, text: str) -> bool:
         """Put a text into the clipboard; returns False if the screen has none, or the window is closed."""
@@ -296,20 +283,9 @@ class Monitor:
             self.show_message(message)
 
     def ask_to_close(self) -> None:
-        """Close the window, unless `on_close` returns False.
-
-        If a film cannot be saved, the window stays until it is asked a second time.
-        """
-        if self.on_close is not None and not self.on_close():
-            return
-        if self._film is not None and not self._closes_film:
-            try:
-                report(self._save_film(self._film, self.screenshots))
-            except RamtekError as refusal:
-                self.tell(f"{refusal}; F3 tries again, and closing again saves the film elsewhere")
-                self._closes_film = True
-                return
-        self.close()
+        """Close the window, unless `on_close` returns False."""
+        if self.on_close is None or self.on_close():
+            self.close()
 
     def handle(self, user_input: Input) -> None:
         """Handle one input."""
@@ -342,7 +318,7 @@ class Monitor:
         shortcuts |= {"q": self.ask_to_close} if key.control else {}
         pages: dict[str, Callable[[], object]] = {"f12": self._tell_of_screenshot}
         pages |= {name: partial(self.overlay.turn_to, page) for name, page in PAGES.items()}
-        pages |= {"f2": self.turn_table} if self.on_key is None else {}
+        pages |= {"f2": lambda: self.tell(turned(self.display.scan_out))} if self.on_key is None else {}
         if key.name in MODIFIERS:
             return
         if key.name not in shortcuts and self.on_key is not None and self.on_key(key):
@@ -362,12 +338,10 @@ class Monitor:
 
     def handle_pointer(self, pointer: Pointer) -> None:
         """Move the joystick and set its switches, unless a program's page is shown; call `on_pointer`."""
-        if pointer.button == LEFT:
-            self._enter = pointer.action == "press"
         if self._source is None:
             self.steer(pointer)
         if self.on_pointer is not None:
-            self.on_pointer(pointer._replace(enter=self._enter))
+            self.on_pointer(pointer)
 
     def steer(self, pointer: Pointer) -> None:
         """Move the joystick to a place of the display's field, and set its switches by the buttons."""

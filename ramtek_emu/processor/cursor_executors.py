@@ -15,18 +15,16 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.memory.cursors import LINE_BITS
+from ramtek_emu.memory.cursors import LINE_BITS, SHAPE_SIZE
 from ramtek_emu.processor.processor import Executors, Processor
 from ramtek_emu.video.view import pixel_at, screen_at
-
-SHAPE_BYTES_PER_ROW: Final = 4
 
 
 def has_cursor(processor: Processor, instruction: Instruction) -> bool:
     """Whether the cursor of the instruction exists; if not, the illegal-instruction bit is set."""
-    if instruction.low_byte in processor.cursors:
+    if instruction.low_byte < len(processor.cursors.all):
         return True
-    processor.flag_illegal()
+    processor.is_illegal = True
     return False
 
 
@@ -36,19 +34,12 @@ def element_bits(processor: Processor) -> int:
 
 
 def write_cursor(processor: Processor, instruction: Instruction) -> None:
-    """Place a cursor in screen coordinates."""
+    """Place a cursor in screen coordinates, or by WCSP in pixel coordinates."""
     if has_cursor(processor, instruction):
         (element,), (line,) = instruction.operands.values()
         place = element & element_bits(processor), line & LINE_BITS
-        processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
-
-
-def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
-    """Place a cursor in pixel coordinates."""
-    if has_cursor(processor, instruction):
-        (element,), (line,) = instruction.operands.values()
-        pixel = element & element_bits(processor), line & LINE_BITS
-        place = screen_at(processor.parameters, processor.configuration, *pixel)
+        if instruction.format.name == "WCSP":
+            place = screen_at(processor.parameters, processor.configuration, *place)
         processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
 
 
@@ -60,21 +51,13 @@ def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
 
 
 def read_cursor(processor: Processor, instruction: Instruction) -> None:
-    """Reply the place of a cursor in screen coordinates, with its state and the switches."""
+    """Reply the place of a cursor in screen coordinates, or by RCSP in pixel coordinates, with its state."""
     if not has_cursor(processor, instruction):
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
-    state = processor.cursors.read_state(instruction.low_byte)
-    words = cursor.element & element_bits(processor), cursor.line & LINE_BITS | state & ~LINE_BITS
-    processor.reply(np.array(words, np.uint16))
-
-
-def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
-    """Reply the place of a cursor in pixel coordinates, with its state and the switches."""
-    if not has_cursor(processor, instruction):
-        return processor.reply(np.zeros(2, np.uint16))
-    cursor = processor.cursors[instruction.low_byte]
-    element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, cursor.line)
+    element, line = cursor.element & element_bits(processor), cursor.line
+    if instruction.format.name == "RCSP":
+        element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, line)
     state = processor.cursors.read_state(instruction.low_byte)
     processor.reply(np.array((element, line & LINE_BITS | state & ~LINE_BITS), np.uint16))
 
@@ -91,9 +74,9 @@ def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
 def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL (32 rows of two words, low byte first). Assumed: fewer rows replace the topmost ones."""
     if has_cursor(processor, instruction):
-        data = instruction.data.astype("<u2").view(np.uint8)[: instruction.length]
-        rows = data[: len(data) // SHAPE_BYTES_PER_ROW * SHAPE_BYTES_PER_ROW].reshape(-1, SHAPE_BYTES_PER_ROW)
-        processor.cursors.set_shape(instruction.low_byte, rows[:32])
+        words = instruction.data[: (instruction.length or 0) // 4 * 2]
+        rows = words.astype("<u2").view(np.uint8).reshape(-1, 4)
+        processor.cursors.set_shape(instruction.low_byte, rows[:SHAPE_SIZE])
 
 
 def connect_device(processor: Processor, instruction: Instruction) -> None:
@@ -103,10 +86,10 @@ def connect_device(processor: Processor, instruction: Instruction) -> None:
 
 EXECUTORS: Final[Executors] = {
     "WCSS": write_cursor,
-    "WCSP": write_cursor_at_pixel,
+    "WCSP": write_cursor,
     "WCSG": write_global_cursor,
     "RCSS": read_cursor,
-    "RCSP": read_cursor_at_pixel,
+    "RCSP": read_cursor,
     "RCSG": read_global_cursor,
     "LCF": load_cursor_shape,
     "DDCC": connect_device,

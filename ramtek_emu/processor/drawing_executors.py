@@ -12,20 +12,13 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Numbers
-from ramtek_emu.drawing import curves, text, vectors
+from ramtek_emu.drawing import curves, plots, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters
-from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register, signed
-from ramtek_emu.memory.scan_orders import Point, Window
+from ramtek_emu.memory.parameters import STANDARD_FONT, Parameters, register
+from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
-
-
-def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
-    """The words and the texture of the instruction's lines."""
-    foreground, background = processor.colors(instruction)
-    transparent = bool(instruction.low_byte & Flags.ADDITIVE)
-    return vectors.Ink(foreground, background, processor.parameters.texture, transparent)
 
 
 def follow(parameters: Parameters, points: Numbers, slices: Iterator[int]) -> Pauses:
@@ -42,26 +35,28 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> Paus
     Hardware: LIN, BTL, JPL (from the operating point through every vertex; it ends at the last); BTL (a
     vector to the operating point is a point); NCAR (texture, write window).
     """
-    parameters = processor.parameters
-    vertices = processor.placed(processor.points(instruction), instruction.low_byte)
-    if not len(vertices):
-        return None
-    linked = np.concatenate(([parameters.start], vertices))
-    style = ink(processor, instruction)
-    slices = vectors.write_linked(processor.frame_buffer, linked, style, parameters.enable)
-    return follow(parameters, vertices, slices)
+    ends = processor.placed(processor.points(instruction), instruction.low_byte)
+    starts = np.concatenate(([processor.parameters.start], ends[:-1]))
+    return write_lines(processor, instruction, starts, ends, linked=True)
 
 
 def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Assumed: four numbers for each vector, start and end; the operating point moves to the last end."""
-    parameters = processor.parameters
     points = processor.points(instruction, 4).reshape(-1, 2)
-    if not len(points):
-        return None
     points = processor.placed(points, instruction.low_byte)
-    starts, ends = points[0::2], points[1::2]
-    style = ink(processor, instruction)
-    slices = vectors.write_lines(processor.frame_buffer, starts, ends, style, parameters.enable)
+    return write_lines(processor, instruction, points[0::2], points[1::2], linked=False)
+
+
+def write_lines(
+    processor: Processor, instruction: Instruction, starts: Numbers, ends: Numbers, linked: bool
+) -> Pauses | None:
+    """Draw lines with the instruction's words and texture."""
+    if not len(ends):
+        return None
+    parameters = processor.parameters
+    transparent = bool(instruction.low_byte & Flags.ADDITIVE)
+    ink = vectors.Ink(*processor.colors(instruction), parameters.texture, transparent)
+    slices = vectors.write_lines(processor.frame_buffer, starts, ends, ink, parameters.enable, linked)
     return follow(parameters, ends, slices)
 
 
@@ -107,11 +102,6 @@ def write_conic(processor: Processor, instruction: Instruction) -> Pauses:
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
-MARKS_AT_ONCE: Final = 256
-PIXELS_AT_ONCE: Final = 1 << 20
-"""Limits: the marks, and the pixels of marks, between two pauses; some 2 ms each."""
-
-
 def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
     """Draw a bar for each number of the data, from the base line to the number.
 
@@ -119,77 +109,43 @@ def write_plot(processor: Processor, instruction: Instruction) -> Pauses:
     scanning, a base line); LIN fplot.c (data are lines of the screen; DIM 1 and SPACE 1 put n numbers on n
     elements, so that spacing is the distance of two bars and dimension the width of a bar).
     Assumed: the opcode, by NCAR's name and by its place among the opcodes of the 9300; that all operands come
-    by flag words as in other instructions; that a mark is a bar in the foreground and includes both ends. The
-    second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters. The scan order gives the
-    direction of the steps; data and base line are the coordinates across it, absolute in each addressing
-    mode, with a sign. Only the memory and the write window clip. The operating point is then where the next
-    bar begins, at the last number, as fplot.c starts at the first number.
+    by flag words as in other instructions; that a plot has bars in the foreground, which include the base
+    line and the number. The second words of DIM and SPACE have no effect; a DIM of 0 is 1, as for characters.
+    The scan order gives the direction of the steps; data and base line are the coordinates across it,
+    absolute in each addressing mode, with a sign. Only the memory and the write window clip. The operating
+    point is then where the next bar begins, at the last number, as fplot.c starts at the first number.
     """
-    parameters = processor.parameters
-    order, width, step = parameters.order, max(1, parameters.dimensions[0]), parameters.spacing[0]
-    base = signed(parameters.base_line)
     word, _ = processor.colors(instruction)
-    pixels = 0
-    for number, value in enumerate(processor.points(instruction, 1)[:, 0].tolist(), 1):
-        first = parameters.start
-        last = order.stepped(first, width - 1, 0)
-        (left, right), (top, bottom) = map(sorted, zip(first, last, strict=True))
-        low, high = sorted((base, value))
-        box = Window(low, top, high, bottom) if order.vertical else Window(left, low, right, high)
-        before = processor.frame_buffer.written
-        processor.frame_buffer.fill(box, word, parameters.enable)
-        pixels += processor.frame_buffer.written - before
-        element, line = order.stepped(first, step, 0)
-        parameters.start = register(Point(value, line) if order.vertical else Point(element, value))
-        if number % MARKS_AT_ONCE == 0 or pixels >= PIXELS_AT_ONCE:
-            pixels = 0
-            yield
+    values = processor.points(instruction, 1)[:, 0]
+    end = yield from plots.write_bars(processor.frame_buffer, processor.parameters, values, word)
+    processor.parameters.start = end
 
 
 def write_text(processor: Processor, instruction: Instruction) -> Pauses:
     """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
-    parameters = processor.parameters
     foreground, background = processor.colors(instruction)
-    style = text.TextStyle(
-        dimensions=parameters.dimensions,
-        spacing=parameters.spacing,
-        size=(1 + (parameters.scale & 0x0F), 1 + (parameters.scale >> 8 & 0x0F)),
+    is_standard = processor.parameters.font == STANDARD_FONT
+    next_cell = yield from text.write_text(
+        processor.frame_buffer,
+        processor.parameters,
+        characters() if is_standard else processor.loaded_characters,
+        instruction.data_bytes(),
         foreground=foreground,
         background=background,
         transparent=bool(instruction.low_byte & Flags.ADDITIVE),
     )
-    is_standard = parameters.font == STANDARD_FONT
-    next_cell = yield from text.write_text(
-        processor.frame_buffer,
-        characters() if is_standard else processor.loaded_characters,
-        instruction.data_bytes(),
-        style,
-        window=parameters.window,
-        order=parameters.order,
-        start=parameters.start,
-        enable=parameters.enable,
-    )
-    parameters.start = register(next_cell)
+    processor.parameters.start = register(next_cell)
 
 
 def load_character(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (twelve rows, a byte each, the first in the high byte).
 
-    Assumed: the highest bit is the leftmost dot, as in rasters; the character of that code is replaced until
-    the display is switched off, since RSET keeps the lookup table too.
+    Assumed: in LPFRP the first row is in the low byte, from its name. The highest bit is the leftmost dot, as
+    in rasters. The character of that code is replaced until the display is switched off, since RSET keeps the
+    lookup table too.
     """
-    load_rows(processor, instruction, ">u2")
-
-
-def load_reversed_character(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: as LPF with the low byte first, from its name."""
-    load_rows(processor, instruction, "<u2")
-
-
-def load_rows(processor: Processor, instruction: Instruction, packing: str) -> None:
-    """Replace the character whose code is in the low byte; `packing` is the byte order of its rows."""
     words = [word for (word,) in instruction.operands.values()]
-    rows = np.array(words, packing).view(np.uint8)
+    rows = np.array(words, "<u2" if instruction.format.name == "LPFRP" else ">u2").view(np.uint8)
     shape = np.unpackbits(rows[:, np.newaxis], axis=1).astype(np.bool_)
     processor.loaded_characters[instruction.low_byte] = shape
 
@@ -208,6 +164,6 @@ EXECUTORS: Final[Executors] = {
     "WPB": write_plot,
     "WT": write_text,
     "LPF": load_character,
-    "LPFRP": load_reversed_character,
+    "LPFRP": load_character,
     "ATTPF": attach_font,
 }

@@ -7,51 +7,59 @@ from typing import Final
 
 import numpy as np
 
+from ramtek_emu.drawing.areas import fill_window
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
 from ramtek_emu.memory.parameters import Parameters
-from ramtek_emu.processor.processor import Executors, Processor, Status
+from ramtek_emu.processor.processor import Executors, Pauses, Processor, Status
 
 MOST_SAVED: Final = 16
 """The number of environments that PUSHE can save. Assumed: one more sets the illegal-instruction status."""
 
 
-FORMAT_OF_OPCODE: Final = {format.opcode: format for format in FORMATS}
-NO_OPCODES: Final = bytes(set(range(256)) - FORMAT_OF_OPCODE.keys())
-"""The opcodes that no display has."""
+FOREIGN: Final = {
+    row.opcode: row.name if row.extended else "the second operand flag word"
+    for row in FORMATS
+    if not (row.extended and row.unimplemented)
+}
+"""What a 9300 lacks if a word with this opcode is illegal. Other opcodes are as likely letters of a text."""
+NOT_FOREIGN: Final = bytes(set(range(256)) - FOREIGN.keys())
 
 
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
     """Hardware: PRG (the status bit). Assumed: only the illegal words are skipped."""
-    processor.flag_illegal()
+    processor.is_illegal = True
     processor.illegal_words += len(instruction.data)
     if processor.foreign is None and not processor.configuration.extended:
-        opcodes = instruction.data.astype(">u2").tobytes()[::2].translate(None, NO_OPCODES)
+        opcodes = instruction.data.astype(">u2").tobytes()[::2].translate(None, NOT_FOREIGN)
         if opcodes:
-            format = FORMAT_OF_OPCODE[opcodes[0]]
-            processor.foreign = format.name if format.extended else "operand flags 2"
+            processor.foreign = FOREIGN[opcodes[0]]
 
 
 def consume(processor: Processor, instruction: Instruction) -> None:
     """Assumed: an instruction of which only the name is known sets the illegal-instruction status."""
-    processor.flag_illegal()
+    processor.is_illegal = True
     processor.unimplemented += 1
 
 
-def reset(processor: Processor, instruction: Instruction) -> None:
+def reset(processor: Processor, instruction: Instruction) -> Pauses | None:
     """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays).
 
     Assumed: an unread ENTER is such an interrupt and is cleared, so that the next program does not read it.
     """
     initialize(processor, instruction)
     processor.clear_status()
-    processor.cursors.forget_enter()
-    processor.frame_buffer.fill(processor.parameters.whole_window, processor.parameters.background)
+    for cursor in processor.cursors.all:
+        cursor.enter = False
+    parameters = processor.parameters
+    return fill_window(
+        processor.frame_buffer, parameters.whole_window, parameters.background, parameters.enable
+    )
 
 
 def initialize(processor: Processor, instruction: Instruction) -> None:
     """Assumed: only the parameters are reset, since libdoc mentions erasing for RSET only."""
-    processor.parameters = Parameters.at_reset(processor.configuration)
+    processor.parameters.restore(vars(Parameters.at_reset(processor.configuration)))
     processor.saved.clear()
 
 
@@ -64,15 +72,15 @@ def save_environment(processor: Processor, instruction: Instruction) -> None:
     if len(processor.saved) < MOST_SAVED:
         processor.saved.append(replace(processor.parameters))
     else:
-        processor.flag_illegal()
+        processor.is_illegal = True
 
 
 def restore_environment(processor: Processor, instruction: Instruction) -> None:
     """Assumed: restores the parameters saved last; without any, sets the illegal-instruction status."""
     if processor.saved:
-        processor.parameters = processor.saved.pop()
+        processor.parameters.restore(vars(processor.saved.pop()))
     else:
-        processor.flag_illegal()
+        processor.is_illegal = True
 
 
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
@@ -82,8 +90,8 @@ def read_parameters(processor: Processor, instruction: Instruction) -> None:
     of coefficients that WC has sent as pairs.
     """
     names = instruction.operands or OPERANDS
-    words = [word for name in names for word in processor.parameters.operand(name)]
-    processor.reply(np.array(words, np.uint16))
+    numbers = np.concatenate([np.atleast_1d(getattr(processor.parameters, name)) for name in names])
+    processor.reply((numbers & 0xFFFF).astype(np.uint16))
 
 
 def read_error_status(processor: Processor, instruction: Instruction) -> None:

@@ -6,32 +6,31 @@ table is loaded and read.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 
-from ramtek_emu.drawing.areas import area
+from ramtek_emu.drawing import areas
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.frame_buffer import NORMAL_ORDER
 from ramtek_emu.memory.parameters import register
-from ramtek_emu.memory.scan_orders import Point, Window, paired_parts
+from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.processor.processor import Executors, Pauses, Processor
 
 
-def erase(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag)."""
-    parameters = processor.parameters
-    _, background = processor.colors(instruction)
-    processor.frame_buffer.fill(parameters.window, background, parameters.enable)
+def erase(processor: Processor, instruction: Instruction) -> Pauses | None:
+    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag).
 
-
-def erase_everything(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: as ERS, but it fills the whole memory and ignores the windows: the B stands for bulk."""
+    Assumed: BERS fills the whole memory and ignores the windows: the B stands for bulk.
+    """
     parameters = processor.parameters
+    window, enable = parameters.window, parameters.enable
+    if instruction.format.name == "BERS":
+        window = parameters.whole_window
+        enable = enable._replace(window=window)
     _, background = processor.colors(instruction)
-    enable = parameters.enable._replace(window=parameters.whole_window)
-    processor.frame_buffer.fill(parameters.whole_window, background, enable)
+    return areas.fill_window(processor.frame_buffer, window, background, enable)
 
 
 def write_image(processor: Processor, instruction: Instruction) -> None:
@@ -41,17 +40,15 @@ def write_image(processor: Processor, instruction: Instruction) -> None:
     mode 1 the upper planes become 0. For pairs of pixels at the edge of the window see scan_orders.
     """
     parameters = processor.parameters
-    if parameters.image_mode & 1:
+    pairs = bool(parameters.image_mode & 1)
+    if pairs:
         words = np.frombuffer(instruction.data_bytes(), np.uint8).astype(np.uint16)
     else:
         words = instruction.data[: (instruction.length or 0) // 2]
-    done = 0
-    for window, start, count in image_parts(processor, len(words)):
-        end = processor.frame_buffer.write_scan(
-            window, parameters.order, start, words[done : done + count], parameters.enable
-        )
-        parameters.start = register(end)
-        done += count
+    end = processor.frame_buffer.write_scan(
+        parameters.window, parameters.order, parameters.start, words, parameters.enable, pairs=pairs
+    )
+    parameters.start = register(end)
 
 
 def read_image(processor: Processor, instruction: Instruction) -> None:
@@ -61,33 +58,21 @@ def read_image(processor: Processor, instruction: Instruction) -> None:
     that pads the last word is 0.
     """
     parameters = processor.parameters
-    length = instruction.length or 0
-    parts = []
-    for window, start, count in image_parts(processor, length if parameters.image_mode & 1 else length // 2):
-        part, end = processor.frame_buffer.read_scan(window, parameters.order, start, count)
-        parameters.start = register(end)
-        parts.append(part)
-    words = np.concatenate(parts) & np.uint16(parameters.read_mask)
-    if parameters.image_mode & 1:
+    length, pairs = instruction.length or 0, bool(parameters.image_mode & 1)
+    count = length if pairs else length // 2
+    words, end = processor.frame_buffer.read_scan(
+        parameters.window, parameters.order, parameters.start, count, pairs
+    )
+    parameters.start = register(end)
+    words &= np.uint16(parameters.read_mask)
+    if pairs:
         data = words.astype(np.uint8).tobytes() + bytes(length % 2)
         reverse = instruction.low_byte & Flags.REVERSE_PACKING
         words = np.frombuffer(data, "<u2" if reverse else ">u2").astype(np.uint16)
     processor.reply(words)
 
 
-def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Point, int]]:
-    """The parts of an image, by the image mode: window, first point, number of pixels."""
-    parameters = processor.parameters
-    if parameters.image_mode & 1 and count and not parameters.window.is_empty:
-        return paired_parts(parameters.window, parameters.order, parameters.start, count)
-    return iter([(parameters.window, parameters.start, count)])
-
-
-RASTER_BYTES: Final = 1 << 12
-"""The bytes of a raster that are written at once. Limit: a bound on the time between pauses, 1 to 4 ms."""
-
-
-def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
+def write_raster(processor: Processor, instruction: Instruction) -> None:
     """Write one bit a pixel: foreground for 1, background for 0.
 
     Hardware: PRG rast.c, LIN wr.c (one bit a pixel into the window in scan order, bytes as in text, highest
@@ -99,15 +84,14 @@ def write_raster(processor: Processor, instruction: Instruction) -> Pauses:
     parameters = processor.parameters
     data = np.frombuffer(instruction.data_bytes(), np.uint8)
     foreground, background = processor.colors(instruction)
-    words = np.array((background, foreground), np.uint16)
-    for first in range(0, len(data), RASTER_BYTES):
-        if first:
-            yield
-        bits = np.unpackbits(data[first : first + RASTER_BYTES])
-        dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
-        parameters.start = processor.frame_buffer.write_scan(
-            parameters.window, parameters.order, parameters.start, words[bits], parameters.enable, dots
+    bits = np.unpackbits(data)
+    dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
+    words = np.array((background, foreground), np.uint16)[bits]
+    parameters.start = register(
+        processor.frame_buffer.write_scan(
+            parameters.window, parameters.order, parameters.start, words, parameters.enable, dots
         )
+    )
 
 
 def write_random_pixels(processor: Processor, instruction: Instruction) -> None:
@@ -136,22 +120,18 @@ def fill(processor: Processor, instruction: Instruction) -> Pauses:
     inside = parameters.write_window.intersection(frame_buffer.window)
     if not inside.holds(parameters.start):
         return
-    mask = np.uint16(parameters.read_mask)
-    part = frame_buffer.words[inside.top : inside.bottom + 1, inside.left : inside.right + 1] & mask
-    line, element = parameters.start.line - inside.top, parameters.start.element - inside.left
+    mask, words = np.uint16(parameters.read_mask), frame_buffer.words
     foreground, _ = processor.colors(instruction)
-    if (instruction.length or 0) >= 2 and instruction.data[0]:
-        open_pixels = part == part[line, element]
-    else:
-        open_pixels = part != np.uint16(foreground & parameters.whole_word) & mask
-    for lines, dots in (yield from area(open_pixels, line, element)):
-        strip = inside._replace(top=inside.top + lines.start, bottom=inside.top + lines.stop - 1)
-        frame_buffer.fill(strip, foreground, parameters.enable, dots)
+    by_seed = (instruction.length or 0) >= 2 and bool(instruction.data[0])
+    seed = words[parameters.start.line, parameters.start.element]
+    word = (seed if by_seed else np.uint16(foreground & parameters.whole_word)) & mask
+    compare = np.equal if by_seed else np.not_equal
+    fenced = np.zeros((inside.height, inside.width + 2), np.bool_)
+    for band in areas.bands(inside):
+        part = words[band.top : band.bottom + 1, inside.left : inside.right + 1] & mask
+        compare(part, word, out=fenced[band.top - inside.top : band.bottom + 1 - inside.top, 1:-1])
         yield
-
-
-MOST_COPIED: Final = 1 << 20
-"""The number of words that are copied at once. Limit: a bound on the time between two pauses, 1 to 8 ms."""
+    yield from areas.fill_area(frame_buffer, inside, fenced, parameters.start, foreground, parameters.enable)
 
 
 def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
@@ -164,24 +144,21 @@ def copy_image(processor: Processor, instruction: Instruction) -> Pauses:
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
     corner = Point(*points[0].tolist()) if len(points) else parameters.start
-    order = parameters.order
+    origin = parameters.order.corner(parameters.window)
+    across, down = corner.element - origin.element, corner.line - origin.line
     inside = parameters.window.intersection(processor.frame_buffer.window)
     parameters.start = corner
     if inside.is_empty:
         return
-    first, origin = order.corner(inside), order.corner(parameters.window)
-    place = Point(corner.element + first.element - origin.element, corner.line + first.line - origin.line)
-    along, runs = order.inner_and_outer(inside)
-    at_once = max(1, MOST_COPIED // along)
+    bands = list(areas.bands(inside))
     blocks = []
-    for run in range(0, runs, at_once):
-        count = along * min(at_once, runs - run)
-        words, _ = processor.frame_buffer.read_scan(inside, order, order.stepped(first, 0, run), count)
-        words &= np.uint16(parameters.read_mask)
-        blocks.append(words.reshape(-1, along))
+    for band in bands:
+        words = processor.frame_buffer.words[band.top : band.bottom + 1, band.left : band.right + 1]
+        blocks.append(words & np.uint16(parameters.read_mask))
         yield
-    for run, block in zip(range(0, runs, at_once), blocks, strict=True):
-        processor.frame_buffer.write_block(order.stepped(place, 0, run), order, block, parameters.enable)
+    for band, block in zip(bands, blocks, strict=True):
+        place = Window(band.left + across, band.top + down, band.right + across, band.bottom + down)
+        processor.frame_buffer.write_block(place, NORMAL_ORDER, block, parameters.enable)
         yield
 
 
@@ -206,7 +183,7 @@ def read_lookup_table(processor: Processor, instruction: Instruction) -> None:
 
 EXECUTORS: Final[Executors] = {
     "ERS": erase,
-    "BERS": erase_everything,
+    "BERS": erase,
     "WI": write_image,
     "RI": read_image,
     "WR": write_raster,

@@ -20,9 +20,7 @@ from typing import Any, Final
 import numpy as np
 
 from ramtek_emu.arrays import Numbers, Words
-from ramtek_emu.checks import is_whole
 from ramtek_emu.configuration import Configuration
-from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import initial_loaded_characters
@@ -55,15 +53,16 @@ class Processor:
         configuration: Configuration,
         frame_buffer: FrameBuffer,
         lookup_table: LookupTable,
-        cursors: Cursors | None = None,
-        beam: Beam | None = None,
+        cursors: Cursors,
+        beam: Beam | None,
     ) -> None:
         self.configuration = configuration
         self.frame_buffer = frame_buffer
         self.lookup_table = lookup_table
-        self.cursors = Cursors(configuration.cursors) if cursors is None else cursors
+        self.cursors = cursors
         self.beam = beam
         self.parameters = Parameters.at_reset(configuration)
+        """The current parameters; always the same object."""
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
         self.loaded_characters = initial_loaded_characters()
@@ -71,26 +70,20 @@ class Processor:
         self.illegal_words = 0
         """The number of illegal words that were skipped; it never decreases."""
         self.foreign: str | None = None
-        """The first instruction of the host that this display lacks and the 9460 has, such as "FILL".
-
-        "operand flags 2" stands for the second operand flag word in another instruction.
-        """
+        """What the host sent first that this 9300 lacks and the 9460 has, such as "FILL"; None if nothing."""
         self.unimplemented = 0
         """The number of instructions without effect, known by name only; it never decreases."""
-        self._illegal = False
+        self.is_illegal = False
+        """Whether the status has an illegal instruction."""
         self.replies = bytearray()
         """The bytes of the replies that the host has not read."""
-
-    def __repr__(self) -> str:
-        state = f"{self.waiting} words of replies waiting, status {self.status.name}"
-        return f"Processor({self.configuration.name}, {state})"
 
     def state(self) -> dict[str, Any]:
         """All but the current parameters and the replies."""
         return {
             "saved": [parameters.state() for parameters in self.saved],
             "loaded_characters": self.loaded_characters.copy(),
-            "illegal": self._illegal,
+            "illegal": self.is_illegal,
             "illegal_words": self.illegal_words,
             "without_effect": self.unimplemented,
         }
@@ -99,33 +92,21 @@ class Processor:
         """Set the values of a state, and drop the replies."""
         self.saved[:] = [Parameters(**values) for values in state["saved"]]
         self.loaded_characters[...] = state["loaded_characters"]
-        self._illegal = state["illegal"]
+        self.is_illegal = state["illegal"]
         self.illegal_words, self.unimplemented = state["illegal_words"], state["without_effect"]
-        self.clear_replies()
-
-    def current_parameters(self) -> Parameters:
-        """The parameters. POPE and RSET replace the object, so ask for it each time."""
-        return self.parameters
+        self.replies.clear()
 
     @property
     def status(self) -> Status:
         """The bits of the interface's status register."""
         status = Status.READY
-        if self._illegal:
+        if self.is_illegal:
             status |= Status.ILLEGAL
         return status | Status.CURSOR if self.cursors.enter_is_pressed else status
 
-    def flag_illegal(self) -> None:
-        """Set the illegal-instruction bit."""
-        self._illegal = True
-
     def clear_status(self) -> None:
         """Clear the request bits of the status register."""
-        self._illegal = self.cursors.enter_is_pressed = False
-
-    def clear_replies(self) -> None:
-        """Drop the replies that the host has not read."""
-        self.replies.clear()
+        self.is_illegal = self.cursors.enter_is_pressed = False
 
     @property
     def waiting(self) -> int:
@@ -156,17 +137,6 @@ class Processor:
     def reply(self, words: Words) -> None:
         """Store words until the host receives them."""
         self.replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
-
-    def take_reply(self, count: int) -> Words:
-        """The next `count` words of the replies; ReplyError if fewer are waiting."""
-        if not is_whole(count) or not 0 <= count <= self.waiting:
-            raise ReplyError(
-                f"the words received must be 0 to {self.waiting}, which wait, not {count!r}; "
-                "send an instruction that reads them first"
-            )
-        words = np.frombuffer(bytes(self.replies[: 2 * count]), np.uint16).copy()
-        del self.replies[: 2 * count]
-        return words
 
     def colors(self, instruction: Instruction) -> tuple[int, int]:
         """The foreground and the background word, exchanged if the swap flag is set."""

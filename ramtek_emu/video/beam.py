@@ -21,9 +21,6 @@ class Beam:
         self.nanoseconds = 0
         """The time since power-on; it never decreases."""
 
-    def __repr__(self) -> str:
-        return f"Beam(field {self.field_number}, line {self.line} of {self.lines_per_field})"
-
     def state(self) -> dict[str, Any]:
         """The time since power-on."""
         return {"nanoseconds": self.nanoseconds}
@@ -43,11 +40,6 @@ class Beam:
         return self.lines + self.timing.blanked_lines
 
     @property
-    def field_number(self) -> int:
-        """The number of whole fields shown since power-on."""
-        return self.lines_done // self.lines_per_field
-
-    @property
     def line(self) -> int:
         """The current line of the beam; lines from `lines` on are blanked."""
         return self.lines_done % self.lines_per_field
@@ -55,7 +47,7 @@ class Beam:
     @property
     def blink_is_on(self) -> bool:
         """Whether blinking cursors are shown in this field."""
-        return self.field_number // self.timing.blink_fields % 2 == 0
+        return self.lines_done // self.lines_per_field // self.timing.blink_fields % 2 == 0
 
     def charge(self, words: int, pixels: int, instructions: int = 1) -> None:
         """Advance the clock by the time of instructions, with all their words and pixels."""

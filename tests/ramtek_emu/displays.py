@@ -14,19 +14,13 @@ from ramtek_emu import Ramtek9300, instructions
 @contextmanager
 def smallest_slices() -> Iterator[None]:
     """Long instructions are executed in the smallest slices, such as single lines or circles."""
-    limits = {
-        "drawing.vectors": ("MOST_POINTS",),
-        "drawing.areas": ("MOST_PIXELS", "MOST_RUNS"),
-        "drawing.curves": ("PIXELS_AT_ONCE",),
-        "drawing.text": ("LINES_AT_ONCE", "PIXELS_AT_ONCE"),
-        "processor.drawing_executors": ("MARKS_AT_ONCE", "PIXELS_AT_ONCE"),
-        "processor.image_executors": ("MOST_COPIED", "RASTER_BYTES"),
-        "video.scan_out": ("PAINTED_AT_ONCE",),
-    }
     with pytest.MonkeyPatch.context() as patch:
-        for module, names in limits.items():
-            for name in names:
-                patch.setattr(f"ramtek_emu.{module}.{name}", 1)
+        for limit in (
+            "drawing.vectors.MOST_POINTS",
+            "drawing.areas.MOST_AT_ONCE",
+            "video.scan_out.PAINTED_AT_ONCE",
+        ):
+            patch.setattr(f"ramtek_emu.{limit}", 1)
         yield
 
 

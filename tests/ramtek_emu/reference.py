@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from ramtek_emu import Configuration
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
+from ramtek_emu.instruction_set.table import OPERANDS
 from ramtek_emu.memory.character_rom import characters
 
 # Scan code -> step to the next word, step to the next run: (element, line) each.
@@ -24,11 +24,6 @@ STEPS = {
     6: ((0, 1), (-1, 0)),
     7: ((0, -1), (-1, 0)),
 }
-OPERAND_WORDS = (
-    (1, 1, 1, 2, 2, 2, 4, 1, 2, 2, 1, 1, 6, 1, 1, 2),
-    (1, 4, 2, 2, 1, 1),
-)
-
 Place = tuple[int, int]
 
 
@@ -145,67 +140,6 @@ def conic_places(coefficients: tuple[int, ...], most: int, start: Place, stop: P
     return [(start[0] + x, start[1] + y) for x, y in places]
 
 
-def split(stream: list[int]) -> list[list[int]]:
-    """The words of the whole instructions of a stream, read word by word; illegal words are joined."""
-    formats = {format.opcode: format for format in FORMATS}
-    was_illegal = False
-    parts: list[list[int]] = []
-    words = iter(stream)
-    while True:
-        part: list[int] = []
-
-        def take(count: int, part: list[int] = part) -> int:
-            for _ in range(count):
-                part.append(next(words))
-            return part[-1] if part else 0
-
-        try:
-            first = take(1)
-            format = formats.get(first >> 8)
-            if format is not None and format.fixed is not None:
-                for name in format.fixed:
-                    value = take(1)
-                    if name == "length" and not format.replies:
-                        take((value + 1) // 2)
-            elif format is not None:
-                flag_words = [take(1) if first & flag else 0 for flag in (2, 4)]
-                head = part.copy()
-                following = sum(
-                    count
-                    for flag_word, counts in zip(flag_words, OPERAND_WORDS, strict=True)
-                    for bit, count in enumerate(counts)
-                    if flag_word & 1 << bit
-                )
-                if format.requests_operands:
-                    following = 0
-                elif format.name == "WC" and flag_words[0] & 1 << 12:
-                    # Twelve coefficients, unless the word after six is 4 and would be an upper half.
-                    before = sum(
-                        count for bit, count in enumerate(OPERAND_WORDS[0][:13]) if flag_words[0] & 1 << bit
-                    )
-                    take(following)
-                    following = 6
-                    if first & 1 and len(part) - len(head) - before in (0, 2, 4):
-                        if take(1) == 4:
-                            take(2)
-                            parts.append(part)
-                            was_illegal = False
-                            continue
-                        following = 5
-                take(following)
-                if first & 1:
-                    length = take(1)
-                    if not format.replies:
-                        take((length + 1) // 2)
-        except StopIteration:
-            return parts
-        if format is None and was_illegal:
-            parts[-1] += part
-        else:
-            parts.append(part)
-        was_illegal = format is None
-
-
 class Twin:
     """A display that draws, writes and reads images; its words and replies are lists of numbers."""
 
@@ -302,6 +236,11 @@ class Twin:
             for element in range(self.size[0]):
                 if inside((element, line), self.p["window"]):
                     self.put((element, line), self.colors[1])
+
+    def bers(self) -> None:
+        before, self.p = self.p, self.p | {"window": self.whole, "write_window": self.whole}
+        self.ers()
+        self.p = before
 
     def scan(self, count: int, pairs: bool = False) -> list[Place]:
         """The places of so many words of the window; the operating point moves behind the last."""

@@ -21,11 +21,9 @@ Some = TypeVar("Some", bound=Server)
 
 
 @contextmanager
-def serving(idle_seconds: float = 20.0, partial_seconds: float = 20.0) -> Iterator[TcpServer]:
+def serving(idle_seconds: float = 20.0) -> Iterator[TcpServer]:
     """A server on TCP in a thread of its own; tests inspect its display while the server is idle."""
-    server = TcpServer(Ramtek9300(), idle_seconds=idle_seconds)
-    server.partial_seconds = partial_seconds
-    with in_a_thread(server):
+    with in_a_thread(TcpServer(Ramtek9300(), idle_seconds=idle_seconds)) as server:
         yield server
 
 

@@ -37,9 +37,9 @@ def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
     return np.array([number & 0xFFFF for number in numbers], np.uint16)
 
 
-SLICED = ("WVL", "WVU", "CIRC", "FILL", "COPY", "WT", "WR", "WC", "WPB")
+SLICED = ("WVL", "WVU", "CIRC", "FILL", "COPY", "WT", "WC", "WPB", "ERS", "BERS")
 """Instructions that can be executed in slices."""
-DRAWING = (*SLICED, "ERS", "WI", "RI", "WPT", "WRP", "SET")
+DRAWING = (*SLICED, "WI", "WR", "RI", "WPT", "WRP", "SET")
 
 
 @st.composite

@@ -51,10 +51,24 @@ test_what_is_no_size = refused(
         ((1, 17), "the size of text must be 1 to 16, not 17; write it smaller"),
     ],
 )
+MANY = "colors must be at most {}, as the table's entries, not {}; send fewer"
 RUN = "the first of {} entries must be 0 to {}, not {}; choose entries of the table"
 test_what_is_no_run_of_entries = refused(
-    lambda given: checked_colors(given[0], [[1, 2, 3]] * given[1]),
-    [((-1, 1), RUN.format(1, 1023, -1)), ((1022, 3), RUN.format(3, 1021, 1022))],
+    lambda given: checked_colors(given[0], [[1, 2, 3]] * given[1], *given[2:]),
+    [
+        ((-1, 1), RUN.format(1, 1023, -1)),
+        ((1022, 3), RUN.format(3, 1021, 1022)),
+        ((0, 1025), MANY.format(1024, 1025)),
+    ],
+)
+COLOR = "a color must be 0 to 255, not {} (entry {}, {}); clip it first"
+test_what_is_no_color = refused(
+    lambda colors: checked_colors(7, colors),
+    [
+        ([[0, 1, 2], [0, 256, 0]], COLOR.format(256, 8, "green")),
+        ([[0, 1, -1]], COLOR.format(-1, 7, "blue")),
+        ([0, 1, 2], "colors must be an (n, 3) array of red, green, blue, not of shape (3,); reshape it"),
+    ],
 )
 WHOLE = "a stream of words must be whole numbers, not {}; convert them first, rounding half up"
 BYTES = WHOLE.partition(";")[0] + "; pass np.frombuffer(data, '<u2') if its low bytes come first"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-from array import array
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -29,7 +28,7 @@ from ramtek_emu import (
 )
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.snapshot import snapshot_bytes
-from ramtek_emu.testing import check_words_within_planes, streams
+from ramtek_emu.testing import streams
 from tests.ramtek_emu.displays import smallest_slices
 from tests.ramtek_emu.recorded_streams import RECORDED
 from tests.ramtek_emu.strategies import SLICED, SMALL, cuts, drawing_instructions, sent_words
@@ -39,7 +38,7 @@ from tests.ramtek_emu.strategies import SLICED, SMALL, cuts, drawing_instruction
 def test_no_words_at_all_raise_or_leave_the_planes(stream: list[int], places: list[int]) -> None:
     whole = Ramtek9300(SMALL)
     whole.send(np.array(stream, np.uint16))
-    check_words_within_planes(whole.words)
+    assert whole.words.max() <= SMALL.largest_word
     assert whole.field().shape == (9, 13, 3)
     cut = Ramtek9300(SMALL)
     for piece in cuts(stream, places):
@@ -54,29 +53,34 @@ def test_no_words_at_all_raise_or_leave_the_planes(stream: list[int], places: li
 
 EVERYWHERE = [0x8000, 0x8000, 0x7FFF, 0x7FFF]
 ONE_PIXEL = [0x0040, 9, 9, 9, 9]
-WORST = {
-    "textured lines across everything": [0x0E05, 8, 0xAAAA, 0, 65528, *EVERYWHERE * 8191],
+LONG = {
+    "textured lines across everything": [0x0E05, 8, 0xAAAA, 0, 4096, *EVERYWHERE * 512],
     "giant text in a window": [0x0C23, 0x0740, *[9] * 4, 16, 16, 0, 0, 0x0F0F, 65534, *[0x4142] * 32767],
+    "giant text": [0x0C03, 0x0700, 16, 16, 0, 0, 0x0F0F, 65534, *[0x4142] * 32767],
     "text in the narrowest window": [0x0C03, 0x0040, 9, 0x8000, 9, 0x7FFF, 65534, *[0x4142] * 32767],
     "rasters in one pixel": [0x0D23, *ONE_PIXEL, 65534, *[0x5555] * 32767],
     "images in one pixel": [0x0A03, *ONE_PIXEL, 65534, *[3] * 32767],
     "images in the largest window": [0x0A03, 0x0040, *EVERYWHERE, 65534, *[3] * 32767],
-    "erasing the largest window": [0x0902, 0x0040, *EVERYWHERE],
+    "erasing some planes": [0x0902, 0x0041, 0x55, *EVERYWHERE],
+    "erasing everything": [0x2B02, 1, 0x55],
+    "a reset": [0x0500],
     "copying the largest window": [0x6903, 0x0040, *EVERYWHERE, 4, 5, 5],
-    "circles": [0x6D01, 65532, *[320, 240, 200] * 10922],
-    "circles of any size": [0x6D01, 65532, *range(32766)],
+    "circles": [0x6D01, 3000, *[320, 240, 200] * 500],
+    "circles of any size": [0x6D01, 3000, *range(1500)],
     "a conic without an end": [0x0F02, 0x1000, *[0] * 9, 1, 0, 0],
     "a conic of large numbers": [0x0F02, 0x1000, *[0x7FFF] * 12],
+    "bars across everything": [0x1003, 0x2100, 0x7FFF, 0, 0, 65534, *[0x7FFF] * 32767],
     "filling": [0x3A02, 0x8002, 5, 3, 3],
 }
 
 
-@pytest.mark.parametrize("name", WORST)
-def test_no_instruction_takes_long(name: str) -> None:
-    display = Ramtek9300()
-    display.send(sent_words([*WORST[name], 0x0700]))
+@pytest.mark.parametrize("name", LONG)
+def test_between_two_pauses_an_instruction_writes_a_quarter_of_a_large_memory_at_most(name: str) -> None:
+    display = Ramtek9300(replace(FAMILY, elements=2048, lines=1024))
+    steps = display.send_stepwise(sent_words([*LONG[name], 0x0700]))
+    written = [0, *(display.frame_buffer.written for _ in steps)]
     assert display.decoder.pending_words == 0
-    check_words_within_planes(display.words)
+    assert np.diff(written).max() <= display.words.size // 4
 
 
 @given(
@@ -94,7 +98,7 @@ def test_slices_leave_the_display_that_an_instruction_in_one_piece_leaves(
     with smallest_slices():
         for executed in sliced.send_stepwise(np.concatenate(parts)):
             pauses.append(executed)
-            check_words_within_planes(sliced.words)
+            assert sliced.words.max() <= SMALL.largest_word
             sliced.field()
     assert (sliced.words == whole.words).all()
     assert sliced.processor.parameters == whole.processor.parameters
@@ -241,26 +245,13 @@ def test_a_number_of_words_that_cannot_be_received_costs_no_reply(count: Any) ->
     display.send([0x1700])  # type: ignore[arg-type]
     with pytest.raises(ReplyError) as refusal:
         display.receive(count)
-    assert str(refusal.value) == (
-        f"the words received must be 0 to 2, which wait, not {count!r}; "
-        "send an instruction that reads them first"
-    )
+    assert str(refusal.value).endswith(f"0 to 2, not {count!r}; send an instruction that reads them first")
     assert display.receive(np.int64(2)).tolist() == [0, 0]  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        tuple,
-        lambda words: words.astype(">u2"),
-        lambda words: words[::-1].copy()[::-1],
-        lambda words: array("H", words.tolist()),
-    ],
-    ids=["tuple", "big-endian", "reversed", "array"],
-)
-def test_words_of_every_kind_draw_the_same(kind: Callable[[Any], Any]) -> None:
+def test_words_of_every_second_place_of_an_array_draw_the_same() -> None:
     plain, other = Ramtek9300(), Ramtek9300()
     for stream in RECORDED:
         plain.send(stream)
-        other.send(kind(stream))
+        other.send(np.repeat(stream, 2)[::2])
     assert snapshot_bytes(other) == snapshot_bytes(plain)

@@ -42,7 +42,7 @@ OLD_PROGRAM = """
 #include <string.h>
 #include <unistd.h>
 
-int main(void)
+int main(int count, char **names)
 {
     /* A text instruction of 21 bytes, RSCP, FILL of the screen, and RI of 32767 words. */
     static const char text[] = "\\x03\\x0c\\x40\\0\\0\\0\\0\\0\\x40\\x01\\x09\\0\\6\\0VENE21";
@@ -50,12 +50,12 @@ int main(void)
     static const char image[] = "\\1\\x0b\\xfe\\xff";
     static unsigned char reply[65535];
     char line[4];
-    int device = open("/dev/ramtek", O_RDWR), copy = dup(device), ends[2];
+    int device = count > 1 ? open(names[1], count) : creat("/dev/ramtek", 0), copy = dup(device), ends[2];
 
     printf("%zd ", write(device, text, 21));
     printf("%zd ", write(copy, ask, 2));
     printf("%zd ", read(device, reply, 2));
-    printf("%zd ", read(copy, reply, 3));
+    printf("%zd ", read(copy, reply, count + 1));
     close(device);
     write(copy, erase, 6);
     write(copy, image, 4);
@@ -81,11 +81,15 @@ print(os.read(device, 2).hex())
 def test_a_library_gives_programs_their_device_with_the_writes_and_reads_of_the_drivers(
     tmp_path: Path,
 ) -> None:
-    library, program = tmp_path / "device.so", tmp_path / "program"
+    library = tmp_path / "device.so"
     (tmp_path / "program.c").write_text(OLD_PROGRAM)
     strict = ["gcc", "-Wall", "-Wextra", "-Werror", "-Wno-unused-result"]
     subprocess.run([*strict, "-shared", "-fPIC", "-o", library, DEVICE, "-ldl"], check=True, timeout=60)
-    subprocess.run([*strict, "-o", program, tmp_path / "program.c"], check=True, timeout=60)
+    # A fortified program calls other functions.
+    fortified = ["-O2", "-U_FORTIFY_SOURCE", "-D_FORTIFY_SOURCE=2"]
+    for name, options in (("program", ()), ("fortified", fortified)):
+        source = tmp_path / "program.c"
+        subprocess.run([*strict, *options, "-o", tmp_path / name, source], check=True, timeout=60)
     with serving_at(tmp_path / "display") as server:
         variables = {
             **os.environ,
@@ -97,11 +101,15 @@ def test_a_library_gives_programs_their_device_with_the_writes_and_reads_of_the_
             subprocess.run(
                 command, env=variables, stdout=subprocess.PIPE, text=True, check=True, timeout=60
             ).stdout
-            for command in ([program], [sys.executable, "-c", PYTHON])
+            for command in (
+                [str(tmp_path / "program")],
+                [str(tmp_path / "fortified"), "/dev/ramtek"],
+                [sys.executable, "-c", PYTHON],
+            )
         ]
-        until(lambda: server.served == 2)
+        until(lambda: server.served == 3)
         assert server.display.processor.illegal_words == 0
-    assert printed == ["21 2 2 2 65534 155\n", "0700\n"]
+    assert printed == [*["21 2 2 2 65534 155\n"] * 2, "0700\n"]
 
 
 @pytest.mark.skipif(shutil.which("pdp11") is None, reason="SIMH simulates the PDP-11")

@@ -9,7 +9,7 @@ from ramtek_emu import errors
 
 TREE = {name: error for name, error in inspect.getmembers(errors, inspect.isclass)}
 KINDS = {
-    "RamtekError": (70, Exception),
+    "RamtekError": (65, Exception),
     "ConfigurationError": (2, ValueError),
     "WordsError": (65, ValueError),
     "ColorsError": (65, ValueError),

@@ -15,11 +15,11 @@ PAINT = "surfaces.side.object_color"
 
 def test_lists_run_together_and_a_loop_comes_back(folder: Path, run: Run) -> None:
     varies = ("--vary", f"{PAINT}=red,blue,red", "--vary", "background=black,white,black")
-    ran = run("animate", "scene", *varies, "--frames", "4", *SMALL, "-o", "a.apng")
-    assert ran == (0, "", "wrote a.apng, 4 frames\n")
+    ran = run("animate", "scene", *varies, "--frames", "4", *SMALL, "-o", "a.webp")
+    assert ran == (0, "", "wrote a.webp, 4 frames\n")
     scene = read_scene("scene")
     expected = [("red", "#000000"), ("#800080", "#808080"), ("blue", "#ffffff"), ("#800080", "#808080")]
-    for shown, (paint, background) in zip(decoded("a.apng"), expected, strict=True):
+    for shown, (paint, background) in zip(decoded("a.webp"), expected, strict=True):
         frame = scene_with(scene, {PAINT: paint, "background": background})
         assert np.array_equal(shown, image(frame, render(frame, (32, 24))))
 
@@ -38,11 +38,11 @@ def test_a_picture_file_cycles_its_colors_without_its_mesh(saved: Path, run: Run
 @pytest.mark.parametrize("source", ["scene", "scene.npz"])
 def test_with_a_held_exposure_less_light_is_darker(saved: Path, run: Run, source: str) -> None:
     """In a picture file, whose light stays, another mapping of all intensities is held instead."""
-    for name, options in (("auto.apng", ()), ("held.apng", ("--hold-exposure",))):
+    for name, options in (("auto.webp", ()), ("held.webp", ("--hold-exposure",))):
         vary = "lights.key.intensity=1,0.2" if source == "scene" else "mapping=linear,gamma"
         size = SMALL if source == "scene" else ()
         ran = run("animate", source, "--vary", vary, *options, "--frames", "2", *size, "-o", name)
         assert ran.code == 0
-    (bright, same), (first, dark) = (decoded(name) for name in ("auto.apng", "held.apng"))
+    (bright, same), (first, dark) = (decoded(name) for name in ("auto.webp", "held.webp"))
     assert np.array_equal(bright, first)
     assert dark.mean() < 0.9 * same.mean() if source == "scene" else np.array_equal(dark, same)

@@ -26,7 +26,7 @@ WRITING = {
     "palette": "palette scene.npz side -o made.gpl",
     "sweep": f"sweep scene.npz --vary {COLOR}=red -o made.png",
     "page": "page scene.npz -o made.html",
-    "animate": f"animate scene.npz --vary {COLOR}=red,blue --frames 2 -o made.apng",
+    "animate": f"animate scene.npz --vary {COLOR}=red,blue --frames 2 -o made.webp",
     "convert": "convert scene made.obj",
 }
 PRINTING = {

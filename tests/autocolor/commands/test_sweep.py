@@ -100,10 +100,10 @@ def test_the_exposure_is_held_as_render_and_animate_hold_it(saved: Path, run: Ru
     options = (*common, "--smooth", smooth)
     assert run("render", "scene", *options, "--set", f"{key}=0.3", "-o", "render.png").code == 0
     assert run("sweep", "scene", *options, "--vary", f"{key}=0.3", "-o", "{name}.png").code == 0
-    film = ("--vary", f"{key}=0.3,1", "--frames", "2", "-o", "film.apng")
+    film = ("--vary", f"{key}=0.3,1", "--frames", "2", "-o", "film.webp")
     assert run("animate", "scene", *options, *film).code == 0
     assert np.array_equal(pixels("0.3.png"), pixels("render.png"))
-    assert np.array_equal(pixels("film.apng"), pixels("render.png"))
+    assert np.array_equal(pixels("film.webp"), pixels("render.png"))
     # A picture file has the exposure of its picture.
     vary = ("--vary", "mapping=gamma")
     for name, more in (("held", ("--hold-exposure",)), ("auto", ())):

@@ -33,7 +33,7 @@ def monitors(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     class Driven(Monitor):
         script: Callable[[Any], object] = staticmethod(lambda monitor: None)
 
-        def run(self) -> None:
+        def run(self, _: object = None) -> None:
             opened.append(self)
             type(self).script(self)
 
@@ -83,7 +83,7 @@ def test_the_input_of_the_window_reaches_the_viewer_and_its_caption_the_window()
     monitor: Any = connected(Monitor(Ramtek9300()), viewer, update)
     monitor.on_key(Key("c", "C", shift=True))
     viewer.on_key.assert_called_once_with("c", False, True, "C", False)
-    monitor.on_pointer(Pointer(300, 200, True, "press", 1, 2, control=True))
+    monitor.on_pointer(Pointer(300, 200, "press", 1, 2, control=True))
     viewer.on_pointer.assert_called_once_with(300, 200, "press", 1, 2, False, True)
     assert (monitor.caption, monitor.screenshots) == ("one", viewer.folder)
     assert viewer.session.clipboard == Clipboard(monitor.copy, monitor.paste)
@@ -231,7 +231,7 @@ class Waited:
                 waited.on_step(self)
                 return self.is_open
 
-            def run(self) -> None:
+            def run(self, _: object = None) -> None:
                 waited.captions.append(f"run: {self.caption}, open: {self.is_open}")
 
         monkeypatch.setattr(window, "Monitor", Stepped)

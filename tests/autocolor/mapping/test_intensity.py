@@ -30,7 +30,6 @@ from autocolor.mapping.intensity import (
 from autocolor.mapping.ranges import level_ranges
 from autocolor.testing import MAPPINGS, scenes
 from autocolor.visibility.visible_points import SurfaceSlice
-from ramtek_emu.testing import check_words_within_planes
 from tests.autocolor.reference import level_of, trimmed
 from tests.autocolor.twins.level import curved
 from tests.small import wall_scene
@@ -300,7 +299,7 @@ def test_brighter_pixels_of_a_surface_have_higher_words_of_its_range_and_ditheri
         words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, dither)
         for dither in ("off", "ordered")
     )
-    check_words_within_planes(plain)
+    assert plain.max() <= 1023
     assert not plain.flags.writeable
     assert np.abs(plain.astype(int) - dithered).max() <= 1
     for words in (plain, dithered):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import re
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,9 @@ from click.testing import CliRunner
 
 from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, WriteError, instructions, read_snapshot
 from ramtek_emu.command_line import ENDING
-from ramtek_emu.commands.displays import running
+from ramtek_emu.commands.displays import Run, running
 from ramtek_emu.commands.ramtek import ramtek
+from ramtek_emu.inspection.inspector import Inspector
 from ramtek_emu.writing import Output
 from tests.ramtek_emu.processes import PipedHost, address_of, ended, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
@@ -47,12 +49,12 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
     assert run("play", "-", "--start", first, *arguments, "--force").returncode == 2
 
 
-UNEXECUTED = r"[0-9],[0-9]{3} words of the host arrived and"
+UNEXECUTED = "the display ended before it had executed all words of the host"
 ATTACKS = (
     (row_of("serve --stdio -o", unread), signal.SIGHUP, ""),
-    (row_of("serve --port", filling), signal.SIGINT, UNEXECUTED),
+    (row_of("serve --port", filling), signal.SIGINT, ""),
     (row_of("serve --stdio -o", filling), signal.SIGTERM, UNEXECUTED),
-    (row_of("serve --unix", filling), signal.SIGHUP, UNEXECUTED),
+    (row_of("serve --unix", filling), signal.SIGHUP, ""),
     (row_of("play", recording), signal.SIGHUP, ""),
     (row_of("list", printing), signal.SIGTERM, ""),
 )
@@ -81,7 +83,7 @@ def test_a_signal_ends_a_command_within_a_long_instruction(tmp_path: Path) -> No
         host.send(np.concatenate((drawn, long)))
         assert host.receive(1) == 0
         said = ended(process, signal.SIGTERM)
-    assert f"{len(long):,} words of the host arrived and were not executed" in said
+    assert UNEXECUTED in said
     assert names[2].read_bytes() == stream(drawn)
     half_drawn = read_snapshot(names[1])
     lines = (half_drawn.words == 5).all(axis=1).tolist()
@@ -160,11 +162,41 @@ def test_a_hint_comes_once_when_words_are_dark_or_an_instruction_is_missing(
     with running(display) as run:
         assert run.hint(display) == ""
         display.send(OUTLINE)
-        display.processor.foreign = "WCI"
+        display.send(words("5065 3A00"))
         hints = run.hint(display)
         assert hints.split("; ", 1)[0].endswith("--table gray shows them (F2 in a window)")
-        assert hints.endswith("WCI is no instruction of a 9300; --configuration family has it")
+        assert hints.endswith("a 9300 does not take FILL, but the display FAMILY does")
     assert capsys.readouterr().err.splitlines() == hints.split("; ", 1)
+
+
+def test_a_hint_waits_until_a_host_rests() -> None:
+    run, display = Run(), Ramtek9300()
+    assert run.hint_at_rest(display, 5.0) == ""
+    for seconds in (10.0, 10.9):
+        # The host sends words, and none for up to 0.9 seconds.
+        display.send(OUTLINE)
+        assert run.hint_at_rest(display, seconds) == run.hint_at_rest(display, seconds + 0.9) == ""
+    assert "nothing is lit" in run.hint_at_rest(display, 11.9)
+    assert run.hint_at_rest(display, 99.0) == ""
+
+
+def test_the_inspector_hints_at_the_end_of_a_dark_stream_and_with_its_picture(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, hints = tmp_path / "outline.ramtek", []
+    path.write_bytes(stream(OUTLINE))
+
+    def look(inspector: Inspector, hint: Callable[[float], str]) -> None:
+        replay = inspector.session.replay
+        for number in (0, len(replay.stream) - 1, len(replay.stream)):
+            replay.go_to(number)
+            hints.append([hint(seconds) for seconds in (1.0, 3.0)][1])
+
+    monkeypatch.setattr("ramtek_emu.inspection.inspector.Inspector.run", look)
+    CliRunner().invoke(ramtek, ["inspect", str(path)], catch_exceptions=False)
+    assert hints[:2] == ["", ""]
+    drawn = CliRunner().invoke(ramtek, ["inspect", str(path), "-o", str(tmp_path / "a.png")])
+    assert drawn.stderr.splitlines()[0] == hints[2] != ""
 
 
 @pytest.mark.parametrize("command", ["play", "inspect"])

@@ -38,14 +38,17 @@ REFUSED = (
     ("--configuration gmr_9301 -o x.png", 2, "ramtek: a configuration must be"),
     ("play", 2, "Error: Missing argument 'STREAM'."),
     ("play none", 66, "ramtek: a stream must be a file that can be read, not 'none' (no such file"),
-    ("play .", 66, "ramtek: a stream must be a file, not the folder .; name a file in it"),
-    ("play ''", 2, "Error: an input must be the name of a file, not ''; give it one"),
+    ("play .", 66, "ramtek: a stream must be a file that can be read, not '.' (is a directory); check"),
     (
         "play - --configuration gmr_9300 --start s.png",
         2,
         "Error: a display must be given by --config",
     ),
-    ("play - -o x.png --loads-per-second 30", 2, "Error: --loads-per-second is for the window; add --window"),
+    (
+        "play - -o x.png --loads-per-second 30",
+        2,
+        "Error: --loads-per-second must not be given with an output",
+    ),
     ("play - --loads-per-second 0", 2, "Error: Invalid value for '--loads-per-second'"),
     ("play none -o a.png --snapshot ./a.png", 2, "Error: two outputs must be two files, not a.png and "),
     ("play none -o a.png --record a.png", 2, "Error: two outputs must be two files"),
@@ -57,7 +60,6 @@ REFUSED = (
     ("assemble none -o /none/at/all", 73, "ramtek: an output must have a folder"),
     ("assemble none -o -", 66, "ramtek: "),
     ("diff - -", 2, "Error: only one of the streams can be stdin, not both; name a file"),
-    ("inspect - --who 0,0 --who-entry 1", 2, "Error: a question must be --who or --who-entry, not both"),
     ("inspect - --who 0,480", 2, "Error: a line must be 0 to 479, not 480; choose a smaller number"),
     ("inspect - --who 640,0", 2, "Error: an element must be 0 to 639, not 640"),
     (
@@ -66,17 +68,27 @@ REFUSED = (
         "Error: Invalid value for '--who': a pixel must be two numbers with , between them, not '5'",
     ),
     ("inspect - --range 1..2", 2, "Error: a range must have an output; add -o OUT"),
-    ("inspect - --who-entry 1024", 2, "Error: an entry must be 0 to 1023, not 1024"),
+    (
+        "inspect - --range 3..2 -o a",
+        2,
+        "Error: a range must be A..B with 1 <= A <= B, not 3..2; correct it",
+    ),
+    ("inspect - --range 0..0 -o a", 2, "Error: a range must be A..B with 1 <= A <= B, not 0..0"),
+    ("inspect - --range 1..1 --at 1 -o a", 2, "Error: a stream must be asked for --at or --range, not both"),
     ("inspect empty --at 1", 2, "Error: an instruction must be 0 to 0, not 1 (empty)"),
     ("serve", 2, "Error: a display must be served on one of --port, --unix and --stdio; give one of them"),
     ("serve --stdio --port 1", 2, "Error: a display must be served on one of --port"),
     ("serve --port 0 --unix x", 2, "Error: a display must be served on one of --port"),
+    ("serve --unix x --host 0.0.0.0", 2, "Error: --host must not be given without --port"),
+    ("serve --stdio --idle 9", 2, "Error: --idle must not be given with --stdio"),
+    ("serve --stdio --once", 2, "Error: --once must not be given with --stdio"),
+    ("serve --port 0 --once --window", 2, "Error: --once must not be given with a window"),
     ("serve --port 70000", 2, "Error: Invalid value for '--port'"),
     ("serve --stdio -o /none/at/all.png", 73, "ramtek: an output must have a folder"),
     ("serve --stdio -o a.jpg", 73, "ramtek: "),
     ("inspect empty -o a.jpg", 73, "ramtek: "),
     ("-o a.jpg", 73, "ramtek: "),
-    ("serve --stdio --start empty", 65, "ramtek: a PNG file must"),
+    ("serve --stdio --start empty", 65, "ramtek: a snapshot must be a whole PNG file"),
     ("serve --stdio --joystick -", 2, "Error: stdin must be for words or for the joystick, not both; give"),
     ("serve --stdio --joystick none", 66, "ramtek: a joystick's lines must"),
     ("serve --port 0 --joystick .", 66, "ramtek: a joystick's lines must"),
@@ -107,23 +119,12 @@ def test_a_command_that_cannot_be_done_is_refused(
 BROKEN = {
     "missing": "raise ModuleNotFoundError(\"No module named 'pygame'\", name='pygame')",
     "half installed": "import pygame.base",
-    "without its library": "raise OSError('libSDL2-2.0.so.0: cannot open shared object file')",
-    "of another version": "import sys; sys.nothing",
-    "silent": "raise ImportError",
 }
 
 
 @pytest.mark.parametrize(
     ("kind", "arguments"),
-    [("missing", ""), ("half installed", ""), ("silent", "serve --port 0 --window"), ("missing", "play -")]
-    + [
-        pytest.param(kind, arguments, marks=pytest.mark.thorough)
-        for kind, arguments in (
-            ("missing", "serve --stdio --window"),
-            ("without its library", ""),
-            ("of another version", ""),
-        )
-    ],
+    [("missing", ""), ("half installed", "serve --port 0 --window"), ("missing", "play -")],
 )
 def test_a_missing_or_broken_pygame_is_reported_with_the_package_to_install(
     tmp_path: Path, kind: str, arguments: str
@@ -136,7 +137,6 @@ def test_a_missing_or_broken_pygame_is_reported_with_the_package_to_install(
     assert said.startswith("ramtek: a window must have pygame, and it cannot be loaded (")
     name = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
     assert said.endswith(f"); install it with `pip install {name}`, or ask for a picture file instead\n")
-    assert "()" not in said
     assert said.count("\n") == 1
     if (kind, arguments) == ("missing", ""):
         picture = tmp_path / "pattern.png"
@@ -182,8 +182,13 @@ def test_help_has_examples_and_loads_nothing_heavy() -> None:
     assert shown.stderr.strip() == ""
 
 
-@pytest.mark.parametrize("command", [["play"], ["list"], ["serve"], ["inspect"], ["diff"]])
+@pytest.mark.parametrize("command", [[], ["play"], ["list"], ["serve"], ["inspect"], ["diff"]])
 def test_the_names_of_configurations_are_completed(command: list[str]) -> None:
     shell = BashComplete(ramtek, {}, "ramtek", "_RAMTEK_COMPLETE")
-    found = shell.get_completions([*command, "--configuration"], "p")
-    assert [item.value for item in found] == ["PRINCETON_9300"]
+
+    def names(text: str) -> list[str]:
+        found = shell.get_completions([*command, "--configuration"], text)
+        return [item.value for item in found]
+
+    assert names("NCAR_") == ["ncar-9460", "ncar-9460-monochrome"]
+    assert names("princeton-9300-m") == ["princeton-9300-monochrome"]

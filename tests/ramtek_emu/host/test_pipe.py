@@ -1,6 +1,8 @@
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import threading
+from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -10,23 +12,21 @@ from hypothesis import strategies as st
 
 from ramtek_emu import FAMILY, Ramtek9300, instructions
 from ramtek_emu.arrays import Colors
-from ramtek_emu.films import write_film
 from ramtek_emu.host.pipe import (
-    CutReader,
-    PacedReader,
-    PolledPipe,
-    StreamFields,
+    PipeServer,
     every,
     is_load,
+    paced,
+    stream_fields,
+    stream_pieces,
 )
 from ramtek_emu.host.server import HostSession
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.monitor.window import Monitor
 from ramtek_emu.testing import streams
-from tests.ramtek_emu.film_reader import decoded
 from tests.ramtek_emu.processes import stream
-from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED
+from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
 from tests.ramtek_emu.serving import until
 from tests.ramtek_emu.strategies import SMALL
 
@@ -36,16 +36,22 @@ def pop_of(pieces: list[bytes]) -> Callable[[int], bytes]:
     return lambda _: pieces.pop()
 
 
-def test_words_that_wait_for_a_place_in_the_queue_are_counted_as_unexecuted() -> None:
-    pieces = [b"", *[b"\0" * 2000] * 6]
-    pipe = PolledPipe(HostSession(Ramtek9300()), pop_of(pieces))
-    until(lambda: pipe.unexecuted == 5000)
-    assert len(pieces) == 2
+def test_the_last_replies_to_a_host_are_written_before_the_end() -> None:
+    stream = np.concatenate((words("0902 0044 7 0 0 9 9"), next(instructions.read_image(0, 0, 10, 10))[0]))
+    pieces, replies, is_over = [b"", stream.astype("<u2").tobytes()], [], threading.Event()
 
+    def write(data: bytes) -> None:
+        is_over.wait(60)
+        replies.append(data)
 
-def test_a_pipe_without_a_reader_of_replies_owes_none() -> None:
-    pipe = PolledPipe(HostSession(Ramtek9300()), pop_of([b""]), None)
-    assert pipe.has_replied is True
+    with PipeServer(Ramtek9300(), pop_of(pieces), write) as pipe:
+        until(lambda: not pipe.step() and pipe.served == 1)
+        # A signal ends the wait.
+        pipe.finish(lambda: True)
+        assert not replies
+        is_over.set()
+        pipe.finish(lambda: False)
+    assert b"".join(replies) == 100 * b"\7\0"
 
 
 def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) -> None:
@@ -53,17 +59,18 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
     replies: list[bytes] = []
     left = [b"", stream.astype("<u2").tobytes()]
     display = Ramtek9300()
-    pipe = PolledPipe(HostSession(display), lambda _: left.pop(), replies.append)
+    pipe = PipeServer(display, lambda _: left.pop(), replies.append)
     monitor = Monitor(display, on_tick=lambda: pipe.serve_for(0.01))
     monitor.open()
 
     def has_ended() -> bool:
         monitor.step(5)
-        return pipe.ended and bool(replies)
+        return pipe.served == 1 and bool(replies)
 
     until(has_ended)
     assert b"".join(replies) == display.words[100, 100:103].astype("<u2").tobytes()
     monitor.close()
+    pipe.close()
 
 
 class Clock:
@@ -73,11 +80,12 @@ class Clock:
         self.now = 100.0
         self.slept: list[float] = []
 
-    def __call__(self) -> float:
+    def monotonic(self) -> float:
         return self.now
 
     def sleep(self, seconds: float) -> None:
-        self.slept.append(seconds)
+        if seconds > 0:
+            self.slept.append(seconds)
         self.now += seconds
 
 
@@ -92,13 +100,11 @@ def in_pieces(data: bytes, cuts: list[int]) -> Callable[[int], bytes]:
     return lambda _: pieces.pop(0) if pieces else b""
 
 
-def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
-    """The pieces that a paced reader returns for a stream in pieces."""
-    read = PacedReader(in_pieces(data, cuts), rate, FAMILY, clock, clock.sleep)
-    read_pieces = []
-    while piece := read(1 << 16):
-        read_pieces.append(piece)
-    return read_pieces
+def paced_pieces(read: Callable[[int], bytes], rate: int, clock: Clock) -> list[bytes]:
+    """The pieces of a stream that is read at the pace of a host."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ramtek_emu.host.pipe.time", clock)
+        return list(iter(partial(paced(read, rate, FAMILY), 1 << 16), b""))
 
 
 cuts = st.lists(st.integers(0, 10_000), max_size=12)
@@ -107,14 +113,15 @@ cuts = st.lists(st.integers(0, 10_000), max_size=12)
 @given(st.lists(st.binary(max_size=60) | st.integers(0, 9).map(load), max_size=9), cuts)
 def test_a_paced_stream_is_the_stream_however_it_is_cut(parts: list[bytes], cuts: list[int]) -> None:
     data = b"".join(parts)
-    assert b"".join(paced(data, cuts, 60, Clock())) == data
+    assert b"".join(paced_pieces(in_pieces(data, cuts), 60, Clock())) == data
 
 
 @given(cuts)
 def test_each_load_but_the_first_waits_for_its_time(cuts: list[int]) -> None:
     drawing = stream(np.concatenate(RECORDED))
     clock = Clock()
-    pieces = paced(drawing + b"".join(map(load, range(5))), cuts, 20, clock)
+    read = in_pieces(drawing + b"".join(map(load, range(5))), cuts)
+    pieces = paced_pieces(read, 20, clock)
     loads = _loads(drawing) + 5
     assert len(clock.slept) == loads - 1
     assert np.allclose(clock.slept, 1 / 20)
@@ -135,20 +142,13 @@ def test_a_late_load_does_not_hurry_the_next_loads() -> None:
         clock.now += 3.0
         return data.pop(0) if data else b""
 
-    read = PacedReader(slow_read, 1, FAMILY, clock, clock.sleep)
-    while read(1 << 16):
-        pass
+    paced_pieces(slow_read, 1, clock)
     assert clock.slept == []
 
 
 def seen_load(number: int) -> bytes:
     """A load of the entry that an empty display shows everywhere."""
     return stream(instructions.load_entries(0, [(20 * number, 0, 0)]))
-
-
-def cut_read(data: bytes, cuts: list[int], is_cut: Callable[[int], bool]) -> CutReader:
-    """A cut reader of a stream that arrives in pieces."""
-    return CutReader(in_pieces(data, cuts), SMALL, is_cut)
 
 
 def fields_by_instruction(data: bytes) -> tuple[list[Colors], list[str]]:
@@ -173,44 +173,27 @@ long_streams = st.lists(
 
 @given(data=long_streams, cuts=cuts, count=st.integers(0, 4))
 def test_a_film_of_a_stream_has_the_fields_after_its_instructions(
-    data: bytes, cuts: list[int], count: int, tmp_path_factory: pytest.TempPathFactory
+    data: bytes, cuts: list[int], count: int
 ) -> None:
     fields, names = fields_by_instruction(data)
     chosen = [n for n, name in enumerate(names, 1) if (n % count == 0 if count else name == "LAM")]
     expected = [fields[number] for number in chosen]
     if not expected or not np.array_equal(expected[-1], fields[-1]):
         expected.append(fields[-1])
-    read = cut_read(data, cuts, every(count) if count else is_load)
-    film = StreamFields(HostSession(Ramtek9300(SMALL)), read, 1000)
-    path = tmp_path_factory.mktemp("films") / "film.apng"
-    write_film(path, film, fields_per_second=24)
-    assert film.count == len(expected)
-    assert not film.left_out
-    assert np.array_equal(decoded(path), expected)
+    cut = stream_pieces(in_pieces(data, cuts), SMALL, every(count) if count else is_load)
+    assert np.array_equal(list(stream_fields(HostSession(Ramtek9300(SMALL)), cut)), expected)
 
 
 LOADS = [seen_load(number) for number in range(1, 7)]
 
 
-@pytest.mark.parametrize(
-    ("most", "numbers", "left_out"), [(1, [5], True), (3, [0, 1, 5], True), (6, range(6), False)]
-)
-def test_the_last_field_of_a_stream_has_a_place_in_every_film(
-    most: int, numbers: Iterable[int], left_out: bool
-) -> None:
-    expected = fields_by_instruction(b"".join(LOADS))[0][1:]
-    film = StreamFields(HostSession(Ramtek9300(SMALL)), cut_read(b"".join(LOADS), [], is_load), most)
-    assert np.array_equal(list(film), [expected[number] for number in numbers])
-    assert film.left_out is left_out
-
-
-def test_a_film_that_is_ended_has_the_field_at_its_end_and_counts_the_words_that_wait() -> None:
+def test_a_film_that_is_ended_has_the_field_at_its_end() -> None:
     session = HostSession(Ramtek9300(SMALL))
-    read = cut_read(b"".join(LOADS), [], every(1))
-    film = StreamFields(session, read, 100, lambda: film.count == 3)
-    fields = list(film)
+    cut = stream_pieces(in_pieces(b"".join(LOADS), []), SMALL, every(1))
+    fields: list[Colors] = []
+    for field in stream_fields(session, cut, lambda: len(fields) == 3):
+        fields.append(field)
     assert len(fields) == 4
     assert np.array_equal(fields[-1], session.display.field())
     # The fourth load was executed before the end was noticed.
-    assert read.waiting == len(LOADS[4]) + len(LOADS[5])
-    assert session.unexecuted == 0
+    assert 2 * session.display.words_received == sum(map(len, LOADS[:4]))

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import itertools
 import os
-import selectors
+import select
 import socket
 import stat
 import threading
@@ -86,7 +86,7 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
 
 def test_a_second_host_waits_until_the_first_has_left() -> None:
     with serving() as server, TcpPort(server.address) as first:
-        first.send(instructions.no_operation())
+        first.send(words("0700"))
         until(lambda: server.busy)
         with TcpPort(server.address) as second:
             second.send(words("0902 0044 7 5 0 5 0 0B03 0040 4 0 5 0 4"))
@@ -129,9 +129,11 @@ def test_hosts_in_a_row_all_draw_also_if_they_leave_without_their_replies(
         assert server.display.words[9, :60].tolist() == list(range(1, 61))
 
 
-def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host() -> None:
-    server = TcpServer(Ramtek9300())
-    port = TcpPort(server.address, timeout=60)
+@pytest.mark.parametrize("is_unix", [False, True])
+def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host(tmp_path: Path, is_unix: bool) -> None:
+    path = tmp_path / "display"
+    server = UnixServer(Ramtek9300(), path) if is_unix else TcpServer(Ramtek9300())
+    port = UnixPort(path, timeout=60) if is_unix else TcpPort(server.address, timeout=60)
     until(server.step)
     # A silent host gives nothing to do.
     assert not server.step()
@@ -179,9 +181,9 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
     assert (session.display.words == twin.words).all()
     assert session.display.decoder.pending_words == twin.decoder.pending_words
     assert session.odd_byte == odd_byte
-    assert session.unfinished == bool(odd_byte or twin.decoder.pending_words)
     session.leave()
-    assert not session.unfinished
+    assert not session.odd_byte
+    assert session.display.decoder.pending_words == 0
     assert session.display.processor.waiting == 0
 
 
@@ -274,25 +276,19 @@ def test_a_recording_with_resets_at_any_pause_gives_the_same_display(
     assert again.processor.parameters == session.display.processor.parameters
 
 
-@given(words=streams(), counts=st.lists(st.integers(0, 3), max_size=12))
-def test_a_session_lets_so_many_instructions_through(words: list[int], counts: list[int]) -> None:
+@given(words=streams(), stops=st.lists(st.booleans(), max_size=12))
+def test_a_stopped_session_executes_nothing(words: list[int], stops: list[bool]) -> None:
     recorded = bytearray()
     session = HostSession(Ramtek9300(SMALL), recorded.extend)
-    # Illegal words in a row are executed at once.
-    # A pause within a long instruction repeats the number before.
-    steps = sorted({0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16))})
     waiting = session.feed(np.array(words, "<u2").tobytes())
-    done = 0
-    for count in counts:
-        session.allowed = count
-        while next(waiting, None) is not None and session.allowed:
-            pass
-        done = min(done + count, len(steps) - 1)
-        assert len(recorded) == 2 * steps[done]
-    session.allowed = None
+    for session.is_stopped in stops:
+        before = len(recorded)
+        next(waiting, None)
+        assert len(recorded) == before or not session.is_stopped
+    session.is_stopped = False
     for _ in waiting:
         pass
-    assert len(recorded) == 2 * steps[-1]
+    assert len(recorded) == 2 * max(0, *Ramtek9300(SMALL).send_stepwise(np.array(words, np.uint16)), 0)
     assert session.unexecuted == 0
 
 
@@ -300,21 +296,18 @@ def test_a_session_lets_so_many_instructions_through(words: list[int], counts: l
 
 
 @contextmanager
-def host_and_client(
-    record: Callable[[bytes], object] | None = None, idle_seconds: float = 10, partial_seconds: float = 10
-) -> Iterator[tuple[socket.socket, Client]]:
+def host_and_client() -> Iterator[tuple[socket.socket, Client]]:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    client = Client(there, HostSession(Ramtek9300(), record), idle_seconds, partial_seconds)
+    client = Client(there, HostSession(Ramtek9300()), 10)
     with host:
         yield host, client
-    client.leave()
+    client.close()
 
 
 def serve_all(client: Client) -> None:
-    """Read once and execute what was read."""
-    client.serve(client.wanted)
-    while client.has_work:
-        client.work()
+    """Read, execute and reply until nothing is left."""
+    while client.step():
+        pass
 
 
 def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
@@ -322,43 +315,23 @@ def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
         host.send(packet("0B03 0040 0 0 0 0 2"))
         host.send(DOT)
         host.close()
-        for _ in range(20):
-            client.serve(client.wanted)
-            client.work()
-        assert client.ended
+        until(lambda: not client.step() and client.ended)
         assert client.session.display.words[5, 5] == 7
 
 
 @pytest.mark.usefixtures("one_instruction_a_piece")
-def test_the_words_that_arrived_and_were_not_executed_are_counted() -> None:
-    with host_and_client() as (host, client):
-        host.send(DOT + packet("0700 0902 0044"))
-        host.send(packet("0700 0700"))
-        counts = [client.unexecuted]
-        client.serve(client.wanted)
-        while client.has_work:
-            counts.append(client.unexecuted)
-            client.work()
-    # The packet that was not read has two words. The last two words of the other begin an instruction.
-    assert counts == [12, 12, 5, 4, 2]
-    assert client.session.unexecuted == 0
-
-
-def test_only_an_unfinished_instruction_has_the_shorter_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = 1000.0
-    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
-    with host_and_client(idle_seconds=600, partial_seconds=60) as (host, client):
-        for seconds, sent, limit in (
-            (500.0, "0700", 600),
-            (100.0, "0A01", 60),
-            (50.0, "4", 10),
-            (5.0, "1", 5),
-            (0.0, "2", 600),
-        ):
-            now += seconds
-            host.send(packet(sent))
-            serve_all(client)
-            assert client.deadline == now + limit
+def test_the_last_packets_of_a_host_that_left_without_its_replies_are_drawn_once() -> None:
+    for more in (b"", DOT):
+        with host_and_client() as (host, client):
+            host.send(packet("0B03 0040 0 0 0 0 2") + more)
+            # The reply is sent while the rest of the packet waits.
+            while not select.select([host], [], [], 0)[0]:
+                client.step()
+            host.send(DOT)
+            host.close()
+            until(lambda: not client.step() and client.ended)
+            assert client.session.display.words[5, 5] == 7
+            assert 2 * client.session.display.words_received == 14 + len(more) + len(DOT)
 
 
 @pytest.mark.usefixtures("one_instruction_a_piece")
@@ -376,9 +349,7 @@ def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: 
 
         monkeypatch.setattr(client.session.display, "send_stepwise", slow)
         host.send(DOT + packet("0B03 0040 0 0 0 0 2"))
-        client.serve(client.wanted)
-        while client.has_work:
-            client.work()
+        while client.step():
             assert client.deadline > now
         assert now > 1020
         now += 11
@@ -390,12 +361,7 @@ def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is
         for odd in (b"!", b""):
             host.send(DOT + packet("0B03 0040 5 5 5 5 2") + odd)
             host.send(packet("0B03 0040 5 5 6 5 4"))
-        while client.waiting < 12:
-            client.serve(selectors.EVENT_READ)
-            while client.work():
-                pass
-        while client.waiting:
-            client.serve(selectors.EVENT_WRITE)
+        serve_all(client)
         assert [host.recv(100) for _ in range(4)] == [packet("7"), packet("7 0")] * 2
 
 
@@ -532,3 +498,13 @@ def test_a_name_appears_when_its_socket_listens_and_a_refused_server_leaves_no_f
     with pytest.raises(OutputExistsError):
         UnixServer(Ramtek9300(), tmp_path / "display")
     assert os.listdir(tmp_path) == ["display"]
+
+
+def test_a_socket_takes_each_name_that_fits_and_no_other(tmp_path: Path) -> None:
+    folder = tmp_path / ("x" * (104 - len(os.fsencode(tmp_path))))
+    folder.mkdir()
+    with UnixServer(Ramtek9300(), folder / "d"):
+        UnixPort(folder / "d", timeout=60).socket.close()
+    with pytest.raises(OutputError, match="path too long"):
+        UnixServer(Ramtek9300(), folder / "\u00e9\u00e9")
+    assert os.listdir(folder) == []

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from ramtek_emu import Configuration, Ramtek9300
+from ramtek_emu.host.server import HostSession, Server
 from ramtek_emu.inspection import session as module
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import RunningHost
@@ -65,10 +66,10 @@ class Served:
     """A host session that a stopped display executes, its inspection, and the replies to its host."""
 
     def __init__(self, display: Ramtek9300) -> None:
-        self.host = RunningHost(display)
-        self.host_session = self.host.session
-        self.host.step = self.step
-        self.inspection = Steps(inspection_of(self.host.replay, self.host))
+        self.session = self.host_session = HostSession(display)
+        self.busy = False
+        self.host = RunningHost(cast(Server, self))
+        self.inspection = Steps(inspection_of(self.host))
         self.replies = b""
         self._waiting: Iterator[bytes] = iter(())
 
@@ -88,11 +89,3 @@ class Served:
             self.send(*streams)
         while self.host_session.unexecuted:
             self.inspection.tick()
-
-    def tick_until_still(self) -> None:
-        """Let the instructions through that the paused inspection waits for."""
-        session = self.inspection
-        while session.state.wanted or session.state.work or session.state.awaited:
-            session.tick()
-            if not self.host_session.unexecuted:
-                break

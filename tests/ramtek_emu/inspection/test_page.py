@@ -12,21 +12,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu import instructions
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.inspection import panels
 from ramtek_emu.inspection.histories import EntryRange
 from ramtek_emu.inspection.page import EDGE, InspectorPage, PageLayout, layout_of
-from ramtek_emu.inspection.panels import PAUSE
-from ramtek_emu.inspection.running_host import RunningHost
+from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.session import inspection_of, selection_text, tell, turn_to
+from ramtek_emu.inspection.stream import Stream
 from ramtek_emu.memory.cursors import BLINK, VISIBLE
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.monitor.boxes import ADVANCE, BLACK, WHITE, PageBox
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.testing import streams
 from tests.ramtek_emu.inspection.sessions import Steps, at_rest, session_of, text_of
-from tests.ramtek_emu.strategies import SMALL
 
 BUTTONS = ("<", ">", "entries")
 
@@ -34,7 +33,8 @@ BUTTONS = ("<", ">", "entries")
 def page_of(session: Steps) -> InspectorPage:
     sizes = session.display.configuration
     layout = layout_of(sizes.shown_elements, sizes.shown_lines, sizes.cursors, BUTTONS)
-    session.with_rows(layout.boxes["listing"].rows - 1, layout.boxes["history"].rows - 1)
+    listing, history = (layout.boxes[name].rows - 1 for name in ("listing", "history"))
+    session.state = replace(session.state, listing_rows=listing, history_rows=history)
     return InspectorPage(session.state, layout, BUTTONS, [("Esc", "back")], "a page")
 
 
@@ -95,8 +95,7 @@ ACTIONS: st.SearchStrategy[Callable[[Steps], object]] = st.one_of(
     ),
     st.integers(0, 900).map(lambda n: lambda session: session.select(EntryRange(n, n + 1 + n % 3))),
     st.just(lambda session: session.select(None)),
-    st.just(lambda session: session.ask("text", "WI")),
-    st.integers(-9, 9).map(lambda rows: lambda session: session.scroll_listing(rows)),
+    st.just(lambda session: session.ask("WI")),
 )
 
 
@@ -112,8 +111,8 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
         action(session)
         at_rest(session)
         page.session = session.state
-        before, runs = shown.copy(), page.lines_changed_since(stamp)
-        stamp = page.scan_out_changes_into(shown, stamp)
+        before = shown.copy()
+        stamp, runs = page.scan_out_changes_into(shown, stamp)
         assert stamp == page.stamp
         fresh = InspectorPage(session.state, page.layout, BUTTONS, [("Esc", "back")], "a page")
         whole = np.zeros_like(shown)
@@ -123,31 +122,22 @@ def test_what_changes_is_drawn_as_the_whole_page_is(
         for first, end in runs:
             unchanged[first:end] = False
         assert np.array_equal(shown[unchanged], before[unchanged])
-        assert page.lines_changed_since(stamp) == ()
+        assert page.scan_out_changes_into(shown, stamp) == (stamp, ())
 
 
-def test_a_message_changes_only_its_lines() -> None:
+def test_a_message_and_the_pointer_change_only_their_lines() -> None:
     session = session_of(pattern(), configuration=CONFIGURATIONS["GMR_9300"])
     page = page_of(session)
-    stamp = page.scan_out_changes_into(np.zeros((page.lines, page.elements), np.uint32), None)
-    page.session = tell(session.state, "a message")
-    status = page.layout.boxes["status"]
-    ((first, end),) = page.lines_changed_since(stamp)
-    assert status.top <= first < end <= status.top + status.height
-
-
-def test_the_button_that_pauses_reads_go_on_while_the_host_waits() -> None:
-    host = RunningHost(Ramtek9300(SMALL))
-    session = Steps(inspection_of(host.replay, host))
-    layout = layout_of(13, 9, 2, ["<", PAUSE])
-    page = InspectorPage(session.state, layout, ["<", PAUSE], [], "a page")
-    pictures = []
-    for action in (session.go_on, session.pause, session.go_on):
-        action()
-        page.session = session.state
-        left, top, width, height = page.layout.buttons[1]
-        pictures.append(page.colors()[top : top + height, left : left + width].tolist())
-    assert pictures[0] == pictures[2] != pictures[1]
+    shown = np.zeros((page.lines, page.elements), np.uint32)
+    stamp, _ = page.scan_out_changes_into(shown, None)
+    for state, name in (
+        (tell(session.state, "a message"), "status"),
+        (replace(tell(session.state, "a message"), pointed=Point(5, 5)), "pixels"),
+    ):
+        page.session = state
+        box = page.layout.boxes[name]
+        stamp, ((first, end),) = page.scan_out_changes_into(shown, stamp)
+        assert box.top <= first < end <= box.top + box.height
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
@@ -165,7 +155,7 @@ def test_the_longest_texts_of_cursors_pixels_and_messages_are_not_cut(name: str)
     parameters = session.display.processor.parameters
     parameters.origin = Point(sizes.elements - 1, sizes.lines - 1)
     session.display.send(instructions.erase(word=sizes.largest_word))
-    session.state = replace(session.state, pointer=Point(0, 0))
+    session.state = replace(session.state, pointed=Point(0, 0))
     last = Window(sizes.elements - 1, sizes.lines - 1, sizes.elements - 1, sizes.lines - 1)
     session.select(last)
     pixels = [text_of(line) for line in panels.pixels(session.state)]
@@ -243,15 +233,16 @@ def test_every_entry_has_its_cell(name: str) -> None:
         for element in range(EDGE, page.layout.stage.width - EDGE, 5):
             entry = page.entry_at(Point(element, line))
             if entry is not None:
-                words.add(word := entry - scan_out.first_entry)
+                words.add(word := entry.first - scan_out.first_entry)
                 assert shown[line, element] == scan_out.table()[word]
     assert len(words) == len(scan_out.table())
 
 
 def test_rings_are_around_the_pixels_that_an_instruction_writes() -> None:
     box = instructions.erase((100, 50, 109, 59), 5)
-    session = session_of(box, box, configuration=CONFIGURATIONS["GMR_9300"])
-    session.go(2)
+    replay = Replay(Stream(words=np.concatenate((box, box))))
+    replay.go_to(2)
+    session = Steps(inspection_of(replay))
     page = page_of(session)
     page.blink_is_on = False
     colors = page.colors().astype(int).sum(axis=2)[:, :, np.newaxis]

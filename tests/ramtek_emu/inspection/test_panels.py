@@ -33,38 +33,28 @@ def test_long_lines_of_a_listing_are_wrapped_and_nothing_is_lost() -> None:
     assert parts == lines
 
 
-def test_parameters_that_an_instruction_of_a_paused_host_changed_are_orange() -> None:
-    served = Served(session_of().display)
-    session = served.inspection
-    session.pause()
+def test_parameters_that_have_changed_since_the_last_position_are_orange() -> None:
+    session = session_of(*BOXES_STREAM)
     assert {line[1].color for line in panels.parameters(session.state)} == {GRAY}
-    served.send(*BOXES_STREAM)
     colors = []
-    for number in range(1, 6):
-        session.step(1)
-        while session.state.wanted:
-            session.tick()
-        assert session.state.number == number
+    for number in (1, 2, 3, 4, 5, 1, 3):
+        session.go(number)
         rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session.state)}
         colors.append((rows["background"][1].color, rows["next entry"][1].color))
     # Instructions 2 and 5 load an entry, the others erase.
-    assert colors == [(ORANGE, GRAY), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
-    # Forward and back over what was executed, the position before counts.
-    session.go(1)
-    session.go(3)
-    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session.state)}
+    forward = [(ORANGE, GRAY), (WHITE, ORANGE), (ORANGE, WHITE), (ORANGE, WHITE), (WHITE, WHITE)]
+    assert colors == [*forward, (WHITE, ORANGE), (ORANGE, ORANGE)]
     assert (rows["background"][1], rows["mask"][1]) == (Span("*7", ORANGE), Span(" 0xFFFF", GRAY))
+
+
+def test_no_parameter_of_a_display_that_runs_is_orange() -> None:
+    served = Served(session_of().display)
+    session = served.inspection
+    served.execute(*BOXES_STREAM)
+    session.pause()
     session.go(1)
-    session.go(5)
-    served.send(*BOXES_STREAM)
-    session.ask("text", "lam")
-    session.find()
-    while session.state.awaited:
-        session.tick()
-    rows = {text_of(line[:1]).strip(): line for line in panels.parameters(session.state)}
-    assert (session.state.number, rows["window"][1].color) == (7, ORANGE)
     session.go_on()
-    served.execute()
+    served.execute(*BOXES_STREAM)
     assert ORANGE not in {line[1].color for line in panels.parameters(session.state)}
 
 
@@ -87,13 +77,13 @@ def test_a_history_says_up_to_which_instruction_it_is() -> None:
 def test_a_pixel_is_shown_with_its_word_its_entry_and_its_color() -> None:
     session = session_of(*BOXES_STREAM)
     session.go(2)
-    session.state = replace(session.state, pointer=Point(3, 4))
+    session.state = replace(session.state, pointed=Point(3, 4))
     session.select(Window(5, 6, 5, 6))
     pointer, selected = panels.pixels(at_rest(session).state)
     assert text_of(pointer).split() == ["pointer", "3,4", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
     assert text_of(selected).split() == ["selected", "5,6", "word", "0005", "=", "5", "entry", "5", "#0A141E"]
     assert pointer[2].background == 0x0A141E
-    session.state = replace(session.state, pointed_entry=5)
+    session.state = replace(session.state, pointed=EntryRange(5, 6))
     session.select(EntryRange(5, 8))
     assert [text_of(line).split() for line in panels.pixels(session.state)] == [
         ["pointer", "entry", "5", "#0A141E"],

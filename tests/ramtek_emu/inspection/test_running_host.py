@@ -28,32 +28,28 @@ def small_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_paused_host_waits_and_is_not_disconnected(monkeypatch: pytest.MonkeyPatch) -> None:
-    host = RunningHost(Ramtek9300())
-    with TcpServer(host.display, idle_seconds=5, record=host.record) as server:
-        host.session, host.step, host.is_connected = server.session, server.step, lambda: server.busy
-        session = Steps(inspection_of(host.replay, host))
-        session.pause()
+    with TcpServer(Ramtek9300(), idle_seconds=5) as server:
+        host = RunningHost(server)
+        session, replay = Steps(inspection_of(host)), host.replay
         port = TcpPort(server.address)
-        port.send(np.tile(instructions.read_cursor(0), 3))
-        while not server.busy:
+        port.send(instructions.read_cursor(0))
+        while not len(replay.stream):
             session.tick()
-        session.step(1)
-        while session.state.wanted:
-            session.tick()
-        assert session.state.number == 1
+        session.pause()
+        port.send(np.tile(instructions.read_cursor(0), 2))
         offset = 0.0
         later = SimpleNamespace(monotonic=lambda: time.monotonic() + offset, perf_counter=time.perf_counter)
         monkeypatch.setattr(module_of_servers, "time", later)
         for _ in range(100):
-            # The host is silent for minutes in all, but it is let execute nothing.
+            # The host is silent for minutes in all, but none of its words is executed.
             offset += 4
             session.tick()
-        assert len(host.replay.stream) == 1
+        assert session.state.number == len(replay.stream) == 1
         assert server.busy
         monkeypatch.undo()
         assert port.receive(2).tolist() == [0, 0]
         session.go_on()
-        while len(host.replay.stream) < 3:
+        while len(replay.stream) < 3:
             session.tick()
         # The last instruction is executed, and its reply may still wait to be sent.
         while server.step():
@@ -74,21 +70,22 @@ def test_the_past_of_a_running_display_has_its_cursors_where_the_joystick_moved_
 def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_BYTES", 3 << 20)
     served = Served(Ramtek9300())
-    session, first = served.inspection, served.host.replay
+    session = served.inspection
+    first = session.replay.stream
     picture = np.arange(480 * 640).reshape(480, 640) % 1024
-    while session.replay is first:
+    while session.replay.stream is first:
         if not served.host_session.unexecuted:
             served.send(instructions.write_image(picture))
         session.tick()
     state = session.state
-    assert (state.number, state.target, state.length, state.first_listed) == (0, 0, 0, 0)
+    assert (state.number, state.target, state.length) == (0, 0, 0)
     assert state.message.endswith("MB of memory: they are counted from here on")
     served.execute()
     # The instructions are counted anew, and the past begins with the picture as it was.
     begin = len(session.replay.stream)
     served.execute(instructions.erase((0, 0, 9, 9), 5), instructions.erase((0, 0, 1, 1), 6))
     session.pause()
-    assert session.state.number == session.state.length == begin + 2 < len(first.stream)
+    assert session.state.number == session.state.length == begin + 2 < len(first)
     shown = []
     for number in (0, begin + 1, begin + 2):
         session.go(number)
@@ -109,15 +106,14 @@ def test_a_host_can_be_paused_within_a_long_instruction() -> None:
         session.tick()
     assert session.state.length == 0
     assert np.array_equal(session.display.words, drawn)
+    session.go_on()
+    served.execute()
+    session.pause()
     expected = Ramtek9300()
     for number in (1, 2):
-        session.step(1)
-        while session.state.wanted:
-            session.tick()
+        session.go(number)
         expected.send(session.replay.stream.words_between(number - 1, number))
-        assert session.state.number == session.state.length == number
         assert np.array_equal(session.display.words, expected.words)
-        assert np.array_equal(session.replay.display.words, expected.words)
 
 
 def is_alike(served: Served) -> bool:
@@ -143,13 +139,10 @@ def test_a_reset_within_a_long_instruction_is_in_the_past(is_paused: bool, has_m
     served.host_session.reset()
     served.host.display.joystick.move_to(30, 40)
     if is_paused:
-        for number in (2, *((3, 4) if has_more else ())):
-            session.step(0 if number == 2 else 1)
-            session.tick()
-            while session.state.wanted:
-                session.tick()
-            assert session.state.number == len(session.replay.stream) == number
-            assert is_alike(served)
+        session.tick()
+        session.go(session.state.length)
+        assert session.state.number == 2
+        assert is_alike(served)
     session.go_on()
     served.execute()
     served.execute(instructions.erase((50, 50, 52, 52), 5))
@@ -160,22 +153,3 @@ def test_a_reset_within_a_long_instruction_is_in_the_past(is_paused: bool, has_m
     assert is_alike(served)
     session.go(1)
     assert session.display.cursors[0].is_visible
-
-
-def test_a_reset_that_the_host_asks_for_hides_the_cursors_of_the_past() -> None:
-    served = Served(Ramtek9300())
-    session = served.inspection
-    served.execute(instructions.write_cursor(0, 5, 6))
-
-    def reset(_: float) -> bool:
-        served.host_session.reset()
-        served.host.step = served.step
-        return True
-
-    served.host.step = reset
-    served.execute(instructions.erase((0, 0, 20, 20), 4))
-    visible = []
-    for number in (1, 2, 3):
-        session.go(number)
-        visible.append(session.replay.display.cursors[0].is_visible)
-    assert visible == [True, False, False]

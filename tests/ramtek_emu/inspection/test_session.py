@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, example, given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from ramtek_emu import Ramtek9300, instructions
@@ -15,7 +16,6 @@ from ramtek_emu.inspection import session as module
 from ramtek_emu.inspection.histories import EntryRange, finished, history_of, next_change
 from ramtek_emu.inspection.listing import moved
 from ramtek_emu.inspection.session import inspection_of, memory_window, parameter_texts
-from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.disassembler import items
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.snapshot import snapshot_bytes
@@ -34,7 +34,6 @@ STEPS = st.one_of(
     st.tuples(st.just("select"), st.builds(lambda n: EntryRange(n, n + 1), st.integers(0, 1023))),
     st.tuples(st.just("click_history"), st.integers(0, 3)),
     st.tuples(st.just("click_listing"), st.integers(0, 30)),
-    st.tuples(st.just("scroll_listing"), st.integers(-30, 30)),
 )
 
 
@@ -79,14 +78,14 @@ def test_the_histories_and_the_next_change_are_those_of_the_stream(
             at_rest(session)
             number = session.state.number
             history = finished(history_of(session.replay, Window(element, line, element, line), number))
-            assert session.state.writes == tuple(reversed(history))
+            assert session.state.writes == tuple(history)
             change = finished(next_change(session.replay, Window(element, line, element, line), number))
             session.next_change()
             assert at_rest(session).state.number == (number if change is None else change)
             session.select(EntryRange(place, place + 1))
             at_rest(session)
             loads = finished(history_of(session.replay, EntryRange(place, place + 1), session.state.number))
-            assert session.state.writes == tuple(reversed(loads))
+            assert session.state.writes == tuple(loads)
 
 
 def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
@@ -98,11 +97,6 @@ def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
         ["3", "0005", "to", "0007"],
         ["1", "0000", "to", "0005"],
     ]
-    numbers = []
-    for back in (True, True, True, True, False):
-        session.next_write(back)
-        numbers.append(session.state.number)
-    assert numbers == [4, 3, 1, 1, 3]
     session.click_history(0)
     assert session.state.number == 4
 
@@ -119,7 +113,7 @@ def test_the_history_of_an_entry_shows_its_colors() -> None:
     for _ in range(2):
         session.next_change()
         assert at_rest(session).state.number == 5
-    assert session.state.message == "entry 5: no change after instruction 5"
+    assert session.state.message == "no change of entry 5 after instruction 5"
 
 
 def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None:
@@ -127,7 +121,7 @@ def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None
     session.select(Window(8, 4, 9, 6))
     session.go(1)
     session.next_change()
-    assert at_rest(session).state.message == "rectangle 8,4..9,6: no change after instruction 1"
+    assert at_rest(session).state.message == "no change of rectangle 8,4..9,6 after instruction 1"
     session.select(Window(2, 2, 2, 2))
     session.next_change()
     assert at_rest(session).state.number == 3
@@ -135,7 +129,7 @@ def test_the_next_change_of_a_rectangle_skips_writes_of_the_same_words() -> None
 
 def test_a_text_of_the_listing_is_found_forward_and_back() -> None:
     session = session_of(*BOXES_STREAM)
-    session.ask("text", "ers")
+    session.ask("ers")
     numbers = []
     for back in (False, False, False, False, True, True, True):
         session.enter(back)
@@ -143,9 +137,16 @@ def test_a_text_of_the_listing_is_found_forward_and_back() -> None:
     assert numbers == [1, 3, 4, 4, 3, 1, 1]
     assert session.state.message == "no ers before instruction 1"
     for text, number in (("ERS BACK=7", 3), ("ERS WIN=", 4), ("LAM", 5), ("BACK=", 5), ("WI WIN=", 5)):
-        session.ask("text", text)
-        session.find()
+        session.ask(text)
+        session.enter()
         assert at_rest(session).state.number == number, text
+
+
+def test_a_text_is_found_in_the_whole_listing_of_an_instruction() -> None:
+    session = session_of(instructions.write_image(np.arange(117).reshape(9, 13)))
+    session.ask("0073 0074")
+    session.enter()
+    assert at_rest(session).state.number == 1
 
 
 def test_equal_polls_are_a_single_row() -> None:
@@ -179,7 +180,8 @@ def test_the_words_that_an_instruction_writes_are_noted(words: list[int], number
     number = session.state.number
     for line, element in ((0, 0), (3, 5), (8, 12)):
         writes = finished(history_of(session.replay, Window(element, line, element, line), number))
-        is_written = session.state.written is not None and bool(session.state.written[line, element])
+        written = session.replay.written
+        is_written = written is not None and bool(written[line, element])
         assert is_written == (number in [write.number for write in writes])
 
 
@@ -199,8 +201,8 @@ def test_the_change_before_is_the_last_of_all_changes_until_then(words: list[int
 
 def test_a_typed_number_is_gone_to() -> None:
     session = session_of(*BOXES_STREAM)
-    session.ask("instruction", "3")
-    assert text_of(panels.status(session.state)) == "go to instruction: 3_"
+    session.ask("3")
+    assert text_of(panels.status(session.state)) == "go to, or find with (Shift+) Enter: 3_  "
     session.enter()
     assert session.state.number == 3
 
@@ -209,12 +211,12 @@ def test_escape_leaves_what_was_begun_last() -> None:
     session = session_of(*BOXES_STREAM)
     session.select(Window(1, 1, 2, 2))
     session.turn_to("entries")
-    session.ask("text")
+    session.ask()
     left = []
     for _ in range(3):
         session.escape()
-        left.append((session.state.prompt, session.state.page, session.state.selection is None))
-    assert left == [("", "entries", False), ("", "", False), ("", "", True)]
+        left.append((session.state.typed, session.state.page, session.state.selection is None))
+    assert left == [(None, "entries", False), (None, "", False), (None, "", True)]
 
 
 @pytest.fixture
@@ -249,9 +251,9 @@ def test_a_click_before_the_states_are_prepared_asks_about_the_instruction_to_co
 def test_escape_before_the_states_are_prepared_lists_the_instruction_that_is_shown(
     far: Steps,
 ) -> None:
-    assert far.state.first_listed > 0
+    assert module.shown_rows(far.state)[0].start > 0
     far.escape()
-    assert (far.state.number, far.state.target, far.state.first_listed) == (0, 0, 0)
+    assert (far.state.number, far.state.target, module.shown_rows(far.state)[0].start) == (0, 0, 0)
 
 
 def test_stepping_needs_no_prepared_states() -> None:
@@ -273,28 +275,26 @@ def test_a_rectangle_of_the_screen_is_one_of_the_memory() -> None:
     assert memory_window(session.display, *places) == (4, 4, 5, 5)
 
 
-def test_lists_show_what_is_left_when_one_row_more_than_fits_is_there() -> None:
-    session = session_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 6))
-    session.with_rows(6, 5)
-    session.go(6)
+def test_lists_show_the_rows_around_the_current_instruction() -> None:
+    session = session_of(np.tile(instructions.erase((0, 0, 3, 3), 5), 8))
+    session.state = replace(session.state, listing_rows=6, history_rows=5)
+    session.go(8)
     session.select(Window(1, 1, 1, 1))
     at_rest(session)
     seen = []
-    for rows in (-9, 0, 1, 9):
-        session.scroll_listing(rows)
-        session.scroll_history(rows)
+    for number in (8, 6, 5, 3, 0):
+        session.go(number)
         listed = [int(text_of(line)[1:].split()[0]) for line in panels.listing(session.state)]
         history = [int(text_of(line)[1:].split()[0]) for line in panels.history(session.state)]
-        seen.append((listed, history))
-    first, second = ([*range(6)], [6, 5, 4, 3, 2]), ([*range(1, 7)], [5, 4, 3, 2, 1])
-    assert seen == [first, first, second, second]
+        assert (len(listed), len(history)) == (6, 5)
+        seen.append((listed[0], history[0]))
+    assert seen == [(3, 8), (3, 7), (3, 6), (1, 5), (0, 5)]
     # The rows that are clicked are those that are seen; a row below the last is none.
     numbers = []
     for click, row in ((session.click_history, 4), (session.click_listing, 6), (session.click_listing, 2)):
         click(row)
-        session.scroll_listing(9)
         numbers.append(session.state.number)
-    assert numbers == [1, 1, 3]
+    assert numbers == [1, 1, 2]
 
 
 # Running displays.
@@ -303,63 +303,41 @@ def test_lists_show_what_is_left_when_one_row_more_than_fits_is_there() -> None:
 @given(
     words=streams(),
     places=st.lists(st.integers(0, 60), max_size=3),
-    actions=st.lists(st.sampled_from(["pause", "go_on", "on", "back", "far"]), max_size=12),
+    actions=st.lists(st.sampled_from(["pause", "go_on", "on", "back", "tick"]), max_size=12),
 )
-def test_a_stopped_display_executes_what_it_is_let_and_all_of_it_in_the_end(
+@example(words=[0xFFFF] * 4, places=[1, 2], actions=[])
+def test_a_paused_display_executes_nothing_and_all_of_it_in_the_end(
     words: list[int], places: list[int], actions: list[str]
 ) -> None:
-    # A row of illegal words that is cut grows when its rest arrives.
-    decoder = Decoder(SMALL)
-    for piece in cuts(words, places):
-        for _ in decoder.split(piece):
-            assume(not decoder.is_within_row)
     served = Served(Ramtek9300(SMALL))
-    session = served.inspection
-    expected = moments(replay_of(words))
+    session, sent = served.inspection, 0
+    stream = session.replay.stream
     for piece in cuts(words, places):
-        session.pause()
         served.send(piece)
+        sent += len(piece)
+        expected = moments(replay_of(words[:sent]))
         for action in actions:
-            done = len(session.replay.stream)
-            is_following = action == "go_on" or (session.state.is_following and action == "on")
-            if action in ("pause", "go_on"):
-                getattr(session, action)()
+            is_paused, done = not session.state.is_following, len(stream.words)
+            if action in ("on", "back"):
+                session.step(1 if action == "on" else -1)
             else:
-                session.step({"on": 1, "back": -1, "far": 3}[action])
-            wanted = session.state.wanted
-            session.tick()
-            count = len(session.replay.stream) - done
-            if not is_following:
-                # Illegal words in a row are executed at once.
-                assert count <= wanted or any(
-                    session.replay.stream.item(number).instruction is None
-                    for number in range(done + 1, done + count + 1)
-                )
+                getattr(session, action)()
+            assert session.state.is_following or len(stream.words) == done or not is_paused
             number = session.state.number
-            if number == session.state.length == len(session.replay.stream):
-                assert session.display is served.host.display
-            if not session.state.is_following:
+            if not session.state.is_following and (
+                number < len(stream) or not served.host_session.unexecuted
+            ):
                 assert snapshot_of_whole(session) == expected[number][0]
         session.go_on()
         served.execute()
-    session.pause()
-    assert len(session.replay.stream) == len(expected) - 1
-    assert snapshot_of_whole(session) == expected[-1][0]
+        session.pause()
+        for number in {len(expected) - 1, max(0, len(expected) - 2)}:
+            session.go(number)
+            assert snapshot_of_whole(session) == expected[number][0]
+            assert snapshot_bytes(session.replay.display) == expected[number][0]
+    expected = moments(replay_of(words))
+    assert len(stream) == len(expected) - 1
     assert served.replies == b"".join(reply.astype("<u2").tobytes() for _, reply in expected)
-
-
-def test_steps_beyond_the_end_wait_for_as_many_instructions_of_a_paused_host() -> None:
-    served = Served(Ramtek9300(SMALL))
-    session = served.inspection
-    served.send(*BOXES_STREAM[:3])
-    served.execute()
-    session.pause()
-    session.go(2)
-    session.step(3)
-    assert (session.state.number, session.state.wanted) == (3, 2)
-    served.send(*BOXES_STREAM)
-    served.tick_until_still()
-    assert (session.state.number, session.state.wanted, len(session.replay.stream)) == (5, 0, 5)
 
 
 def snapshot_of_whole(session: Steps) -> bytes:
@@ -368,40 +346,3 @@ def snapshot_of_whole(session: Steps) -> bytes:
     display.decoder.clear()
     display.words_received = int(session.replay.stream.ends[session.state.number])
     return snapshot_bytes(display)
-
-
-def test_a_paused_host_runs_to_an_opcode_or_to_a_change() -> None:
-    served = Served(Ramtek9300(SMALL))
-    session = served.inspection
-    session.select(Window(6, 6, 6, 6))
-    served.send(*BOXES_STREAM)
-    numbers = []
-    for opcode in (None, "LAM", None, "WI"):
-        if opcode is None:
-            session.next_change()
-        else:
-            session.ask("text", opcode)
-            session.find()
-        served.tick_until_still()
-        numbers.append((session.state.number, session.state.message))
-    # Instructions 3 and 4 do not change the pixel, and no WI is sent.
-    assert [number for number, _ in numbers[:2]] == [1, 2]
-    assert [message for _, message in numbers[2:]] == [
-        f"waiting for the host: {what} ... Esc stops" for what in ("a change of pixel 6,6", "WI")
-    ]
-    assert session.display.words[6, 6] == 5
-    session.escape()
-    assert (session.state.awaited, session.state.message) == (None, "paused: the host waits")
-    assert len(session.replay.stream) == 5
-
-
-def test_a_paused_host_runs_to_a_change_of_an_entry() -> None:
-    served = Served(Ramtek9300(SMALL))
-    served.inspection.select(EntryRange(5, 6))
-    served.send(*BOXES_STREAM)
-    numbers = []
-    for _ in range(2):
-        served.inspection.next_change()
-        served.tick_until_still()
-        numbers.append(served.inspection.state.number)
-    assert numbers == [2, 5]

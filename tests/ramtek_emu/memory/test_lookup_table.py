@@ -1,11 +1,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, instructions
+from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration
 from ramtek_emu.memory.lookup_table import LookupTable
 
 runs = st.tuples(st.integers(0, 2047), st.sampled_from([0, 1, 2, 3, 50, 2048, 2049]))
@@ -44,22 +43,3 @@ def test_loading_the_same_entries_repeatedly_counts_as_one_range() -> None:
     table.load(26, np.array([0x0203, 1], np.uint16))
     assert table.entries_written_since(written) is None
     assert table.entries_written_since(table.written - 1) == (13, 14)
-
-
-def test_colors_that_do_not_fit_are_not_sent() -> None:
-    with pytest.raises(ColorsError):
-        instructions.load_entries(7, [[0, 256, 0]])
-
-
-def test_the_word_pair_is_green_and_blue_then_red() -> None:
-    assert instructions.load_entries(1, [[0x11, 0x22, 0x33]]).tolist() == [0x0300, 2, 4, 0x2233, 0x0011]
-
-
-def test_entries_are_read_only_and_written_only_grows() -> None:
-    table = LookupTable()
-    table.load(6, np.array([0x0203], np.uint16))
-    assert table.written == 1
-    with pytest.raises(ValueError, match="read-only"):
-        table.entries[0, 0] = 1
-    with pytest.raises(ValueError, match="read-only"):
-        table.packed[0] = 1

@@ -17,7 +17,6 @@ from hypothesis import strategies as st
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.errors import escaped
 from ramtek_emu.monitor.glass import Glass, enlarged, pixel_under, viewport
-from ramtek_emu.monitor.overlay import Overlay
 from ramtek_emu.monitor.pattern import pattern
 from tests.virtual_screen import virtual_screen
 
@@ -71,7 +70,7 @@ def test_after_a_cursor_moved_only_its_old_and_new_lines_go_to_the_screen(
 
     def show() -> list[Any]:
         sent.clear()
-        glass.show(display.scan_out, Overlay(), "", hides_mouse=True)
+        glass.show(display.scan_out, None, hides_mouse=True)
         return sent
 
     assert show() == ["all"]
@@ -105,7 +104,7 @@ def test_the_parts_that_are_sent_are_seen_on_the_screen(
                 display.joystick.move_to(*place)
                 if number == 3:
                     display.send(instructions.load_entries(9, [[200, 100, 50]]))
-                glass.show(display.scan_out, Overlay(), "", hides_mouse=True)
+                glass.show(display.scan_out, None, hides_mouse=True)
                 field = display.field().repeat(scale, axis=0).repeat(scale, axis=1)
                 until = time.monotonic() + 60
                 while time.monotonic() < until:
@@ -152,7 +151,7 @@ def test_every_place_of_the_window_is_over_the_nearest_pixel(
 
 def test_the_mouse_is_hidden_where_a_cursor_stands_for_it(glass: Glass) -> None:
     for hides in (True, False):
-        glass.show(Ramtek9300().scan_out, Overlay(), "", hides_mouse=hides)
+        glass.show(Ramtek9300().scan_out, None, hides_mouse=hides)
         assert pygame.mouse.get_visible() is not hides
 
 
@@ -164,7 +163,7 @@ def test_a_window_smaller_than_the_field_shows_it_whole(glass: Glass) -> None:
     for corner in ((0, 0, 9, 9), (630, 470, 639, 479)):
         display.send(instructions.erase(corner, 9))
     pygame.display.set_mode((700, 300), pygame.RESIZABLE)
-    glass.show(display.scan_out, Overlay(), "", hides_mouse=False)
+    glass.show(display.scan_out, None, hides_mouse=False)
     pixels = pygame.surfarray.array3d(pygame.display.get_surface())[:, :, 0]
     assert (pixels[150:154, :4] > 200).all()
     assert (pixels[546:550, 296:] > 200).all()

@@ -21,14 +21,14 @@ def after(*added: Input) -> list[Input]:
 
 
 def move(element: int) -> Pointer:
-    return Pointer(element, 1, False, "move")
+    return Pointer(element, 1, "move")
 
 
 def wheel(direction: str = "up", steps: int = 1, shift: bool = False, control: bool = False) -> Pointer:
-    return Pointer(0, 0, False, f"wheel {direction}", steps=steps, shift=shift, control=control)
+    return Pointer(0, 0, f"wheel {direction}", steps=steps, shift=shift, control=control)
 
 
-PRESS, LIFT = Pointer(2, 1, False, "press", 1), Pointer(4, 1, False, "release", 1)
+PRESS, LIFT = Pointer(2, 1, "press", 1), Pointer(4, 1, "release", 1)
 LEFT, UP = Key("left"), Key("up")
 AGAIN = Key("left", repeated=True)
 ORDER: list[Input] = [Key("a", "a"), PRESS, Path("scene.toml"), Close(), PRESS, Close()]
@@ -86,13 +86,13 @@ def test_what_waits(added: list[Input], waiting: list[Input]) -> None:
 
 def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
     queue = InputQueue()
-    for user_input in (LEFT, LEFT, Pointer(0, 0, False, "press", 3), Key("right"), Key("right")):
+    for user_input in (LEFT, LEFT, Pointer(0, 0, "press", 3), Key("right"), Key("right")):
         queue.add(user_input)
     assert queue.down == {"left", "right", 3}
     queue.release_everything()
     assert queue.down == frozenset()
     assert [queue.take() for _ in range(len(queue))] == [
-        LEFT, Pointer(0, 0, False, "press", 3), Key("right"), Release("left"), Release("right"),
+        LEFT, Pointer(0, 0, "press", 3), Key("right"), Release("left"), Release("right"),
     ]  # fmt: skip
 
 
