@@ -66,6 +66,11 @@ class RowChange(NamedTuple):
         return self.verb or ", ".join(str(each) if has_values else each.column for each in self.columns)
 
 
+def describe_look(before: Scene, after: Scene, most: int = 80) -> str:
+    """The difference between the looks of two scenes, as `describe` says it: their views are left out."""
+    return describe(before.replace(view=after.view), after, most)
+
+
 def describe(before: Scene, after: Scene, most: int = 80) -> str:
     """The difference between two scenes in a line, empty if they are equal.
 

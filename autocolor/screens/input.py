@@ -118,6 +118,7 @@ class Chord:
     name: str
     control: bool = False
     shift: bool = False
+    alt: bool = False
 
     @property
     def is_sign(self) -> bool:
@@ -125,7 +126,7 @@ class Chord:
         return len(self.name) == 1 and not self.name.isalpha()
 
     def __str__(self) -> str:
-        modifiers = ["Ctrl"] * self.control + ["Shift"] * self.shift
+        modifiers = ["Ctrl"] * self.control + ["Shift"] * self.shift + ["Alt"] * self.alt
         names = {
             "escape": "Esc",
             "up": "Up",
@@ -161,7 +162,7 @@ class Binding(Generic[Driven]):
 
 
 def bound_to(
-    bindings: Sequence[Binding[Driven]], name: str, control: bool, shift: bool, typed: str
+    bindings: Sequence[Binding[Driven]], name: str, control: bool, shift: bool, alt: bool, typed: str
 ) -> tuple[Binding[Driven], int] | None:
     """The binding of a key that was pressed, and the index of its chord; None if it has none.
 
@@ -171,7 +172,7 @@ def bound_to(
         (binding, number, chord)
         for binding in bindings
         for number, chord in enumerate(binding.chords)
-        if chord.control == control
+        if (chord.control, chord.alt) == (control, alt)
     ]
     by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
     by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]

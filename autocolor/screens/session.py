@@ -634,15 +634,26 @@ class Comparing:
     def __init__(self, studio: Studio) -> None:
         self._studio = studio
         self._chosen: NamedScene | None = None
+        self._seen: tuple[Scene, View, NamedScene] | None = None
+        """A scene, the present view, and that scene in this view."""
         self._cached: tuple[Scene, Scene, DisplayImage] | None = None
         """The present scene, the scene that it was last compared with, and the image of that other scene."""
         self._shown: DisplayImage | None = None
 
     @property
     def other(self) -> NamedScene | None:
-        """The chosen scene to compare with, else the state before the last step, if there is one."""
-        steps = self._studio.history.to_undo
-        return self._chosen or (NamedScene(BEFORE, steps[-1]) if steps else None)
+        """The chosen scene to compare with, else the look before the last step, if there is one.
+
+        It is in the present view if it has the present mesh.
+        """
+        steps, present = self._studio.history.to_undo, self._studio.scene
+        other = self._chosen or (NamedScene(BEFORE, steps[-1]) if steps else None)
+        if other is None or other.scene.mesh is not present.mesh or other.scene.view == present.view:
+            return other
+        if self._seen is None or self._seen[:2] != (other.scene, present.view):
+            seen = other._replace(scene=other.scene.replace(view=present.view))
+            self._seen = other.scene, present.view, seen
+        return self._seen[2]
 
     def choose(self, other: NamedScene | None) -> None:
         """Choose the scene to compare with from now on; None for the state before the last step."""

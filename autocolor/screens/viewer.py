@@ -184,7 +184,13 @@ class Viewer:
     # Input.
 
     def on_key(
-        self, name: str, control: bool = False, shift: bool = False, typed: str = "", repeated: bool = False
+        self,
+        name: str,
+        control: bool = False,
+        shift: bool = False,
+        alt: bool = False,
+        typed: str = "",
+        repeated: bool = False,
     ) -> bool:
         """Handle a key press; returns False if the key does nothing here.
 
@@ -197,15 +203,17 @@ class Viewer:
                 self._watching.end()
                 self._update()
             return True
-        taken = self._press(name, control, shift, typed, repeated)
+        taken = self._press(name, control, shift, alt, typed, repeated)
         self._update()
         return taken
 
-    def _press(self, name: str, control: bool, shift: bool, typed: str, repeated: bool) -> bool:
+    def _press(
+        self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool
+    ) -> bool:
         """Offer a key to the typed text, the menu, the screen and the key bindings, in this order."""
-        if not control and self._type(name, typed, repeated):
+        if not control and not alt and self._type(name, typed, repeated):
             return True
-        chosen = bound_to(BINDINGS, name, control, shift, typed)
+        chosen = bound_to(BINDINGS, name, control, shift, alt, typed)
         if chosen is None:
             return False
         binding, number = chosen
@@ -369,8 +377,8 @@ class Viewer:
         try:
             self.studio.refine()
         except (AutocolorError, RamtekError) as error:
-            # The coarse picture was accepted, but its full size is refused: take the edit back.
-            self.studio.undo()
+            # The coarse picture was accepted, but its full size is refused.
+            self.studio.take_back()
             self.session.warn(error)
 
     def _do(
@@ -426,7 +434,7 @@ class Viewer:
         board, session = self.board, self.session
         if board.is_dragging:
             if self._action.was_by((DRAG, self._drags)):
-                self.studio.undo()
+                self.studio.take_back()
                 session.tell("taken back")
             self._mouse.forget()
             board.release()
@@ -666,6 +674,12 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         "while held: the state before the last step",
         lambda viewer, _: viewer.compare(),
         release=lambda viewer: viewer.session.end_comparing(),
+    ),
+    Binding(
+        (Chord("left", alt=True), Chord("right", alt=True)),
+        "the view before, and forward again",
+        lambda viewer, number: viewer.edits.view_again(number == 0),
+        repeats=True,
     ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo(), repeats=True),
     Binding(

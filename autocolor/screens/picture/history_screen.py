@@ -11,7 +11,7 @@ from functools import partial
 from itertools import pairwise
 from typing import Final
 
-from autocolor.journal.description import describe
+from autocolor.journal.description import describe_look
 from autocolor.scene.scene import Scene
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.screen import Cached
@@ -33,7 +33,6 @@ DIGITS: Final = 3
 MOST_LETTERS: Final = (WIDTH - 2 * MARGIN) // CHARACTER - DIGITS - 2
 
 BEGIN: Final = "as the session began"
-NO_CHANGE: Final = "no change"
 
 
 class HistoryScreen(OverPicture):
@@ -101,7 +100,7 @@ class HistoryScreen(OverPicture):
 
         def lines() -> Sequence[tuple[str, str]]:
             steps = [
-                (describe(*pair, MOST_LETTERS) or NO_CHANGE, describe(*pair, MOST_DESCRIBED) or NO_CHANGE)
+                (describe_look(*pair, MOST_LETTERS), describe_look(*pair, MOST_DESCRIBED))
                 for pair in pairwise(scenes)
             ]
             return [(BEGIN, BEGIN), *steps] if shown.start == 0 else steps

@@ -224,6 +224,12 @@ class PictureEdits:
         self.look(self.session.studio.history.saved.scene.view)
         self.session.tell("the view as opened")
 
+    def view_again(self, back: bool) -> None:
+        """Return to the view before, or forward to the view that was left."""
+        studio = self.session.studio
+        if not (studio.view_back() if back else studio.view_forward()):
+            self.session.tell(f"there is no view {'before' if back else 'after'} this one")
+
     def see_from(self, side: str) -> None:
         """Look at the object from a side of `sides_of`."""
         view = seen_from(self.session.scene, side)
