@@ -167,7 +167,9 @@ class SocketPort:
             return
         deadline = time.monotonic() + self.timeout
         with self.socket:
-            self._exchange(time.monotonic())
+            # What has arrived may end with the display's refusal of this host.
+            while ready(self.socket, selectors.EVENT_READ, 0) and time.monotonic() < deadline:
+                self._exchange(deadline)
             try:
                 self.socket.shutdown(socket.SHUT_WR)
                 while (left := deadline - time.monotonic()) > 0 and ready(

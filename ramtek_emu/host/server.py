@@ -432,7 +432,7 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
     """Listen at a path, which then names the socket; returns the state of its file.
 
     The name appears when the socket listens already, so that no host that finds it is refused. Before, the
-    socket has a hidden name in the same folder.
+    socket has a hidden name in the same folder, which only Linux can name by its descriptor.
     """
     # The socket's file gets the permissions of the socket: set them before the file exists.
     os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
