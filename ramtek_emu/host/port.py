@@ -14,6 +14,7 @@ import re
 import selectors
 import socket
 import struct
+import sys
 import time
 from contextlib import suppress
 from types import TracebackType
@@ -291,7 +292,9 @@ class UnixPort(SocketPort):
 def packet_socket() -> socket.socket:
     """A Unix socket that keeps the boundaries of writes; PortError where the system has none."""
     try:
-        return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        if sys.platform != "win32":
+            return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        raise OSError("there are none")
     except (AttributeError, OSError) as cause:
         raise PortError(
             "a system must have Unix sockets that keep the boundaries of writes (SOCK_SEQPACKET), and this "
