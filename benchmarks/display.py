@@ -157,7 +157,7 @@ def scan_out_figures(stream: Words, rounds: int) -> Iterator[Figure]:
     for factor in (2, 3, 16):
         display.send(np.array([0x2600, (factor - 1) * 0x0101], np.uint16))
         ratio = best(field, 10 * rounds) / plain
-        yield Figure(f"scan-out with cursors, origin and zoom {factor}", ratio, "x plain", 2.5, True)
+        yield Figure(f"scan-out with cursors, origin and zoom {factor}", ratio, "x plain", 2, True)
 
 
 def main() -> None:

@@ -128,10 +128,12 @@ def write_numbered(data: bytes, folder: Path, name: str, suffix: str) -> Path:
     number = 1
     while True:
         path = folder / f"{name}-{number:04d}{suffix}"
-        with suppress(OutputExistsError):
-            write_atomically(path, data, overwrite=False)
-            return path.resolve()
         number += 1
+        if not os.path.lexists(path):
+            # Another program may take the number meanwhile.
+            with suppress(OutputExistsError):
+                write_atomically(path, data, overwrite=False)
+                return path.resolve()
 
 
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:

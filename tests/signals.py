@@ -271,7 +271,9 @@ def check(row: Row, number: signal.Signals, place: Path, code: int, said: str) -
     if "s.png" in left:
         twin = Ramtek9300(NCAR_9460)
         twin.send(np.frombuffer((place / "r.ramtek").read_bytes(), "<u2").astype(np.uint16))
-        assert np.array_equal(read_snapshot(place / "s.png").words, twin.words), "the recording is cut"
+        words = read_snapshot(place / "s.png").words
+        # A fill that the signal cut off is half drawn, and not in the recording.
+        assert np.isin(words[words != twin.words], (8, 9)).all(), "the recording is cut"
 
 
 class Signalled(Trial):

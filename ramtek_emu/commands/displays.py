@@ -334,15 +334,19 @@ def show(
     monitor.run(waits)
 
 
-def tell_the_end(session: HostSession) -> None:
-    """Report words that were not executed: illegal words, instructions without effect, an incomplete end."""
+def tell_the_end(session: HostSession, run: Run) -> None:
+    """Report words that were not executed: illegal words, instructions without effect, an incomplete end.
+
+    After a signal, the end of the words that were read says nothing about the stream.
+    """
     processor = session.display.processor
     if illegal := processor.illegal_words:
         tell(f"words that begin no instruction, skipped: {illegal}")
     if unknown := processor.unimplemented:
         tell(f"instructions known by name only, without effect: {unknown}")
     tell_unexecuted(session)
-    tell_incomplete("the stream", session.display.decoder.pending_words, session.odd_byte != b"")
+    if not run.ends:
+        tell_incomplete("the stream", session.display.decoder.pending_words, session.odd_byte != b"")
 
 
 def tell_unexecuted(session: HostSession) -> None:
@@ -354,6 +358,7 @@ def tell_unexecuted(session: HostSession) -> None:
 def tell_incomplete(stream: str, words: int, has_odd_byte: bool) -> None:
     """Report the words of an instruction, and the byte, that begin at the end of a stream."""
     if words:
-        tell(f"{stream} ends within an instruction: its {words} words were dropped")
+        dropped = "word was" if words == 1 else f"{words} words were"
+        tell(f"{stream} ends within an instruction: its {dropped} dropped")
     if has_odd_byte:
         tell(f"{stream} ends within a word: its last byte was dropped")

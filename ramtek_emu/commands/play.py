@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
@@ -22,6 +23,7 @@ from ramtek_emu.commands.displays import (
     tell_the_end,
     unreadable,
 )
+from ramtek_emu.writing import PNG
 
 if TYPE_CHECKING:
     from ramtek_emu.arrays import Colors
@@ -90,16 +92,20 @@ def play(
     Without -o, --snapshot or --film it is shown in a window. The replies to instructions that read are
     dropped.
     """
+    film_file = film
     in_window = output is None and snapshot is None and film is None
     if not in_window:
         refuse_given(context, "with an output", "loads_per_second")
     if film is None:
         refuse_given(context, "without --film", "every", "fps", "once")
     else:
-        from ramtek_emu.films import check_film
+        from ramtek_emu.films import check_film, numbered
 
         check_film(film, fps, force)
-    refuse_outputs(force, record, film, pictures=[output, snapshot])
+        if film.lower().endswith(PNG):
+            # No output may be the first picture, which stands for all.
+            film_file = numbered(film, 1)
+    refuse_outputs(force, record, film_file, pictures=[output, snapshot])
     file = open_stream(stream)
     display = display_asked_for(configuration, start, table)
 
@@ -112,8 +118,10 @@ def play(
             try:
                 return os.read(number, most) if run.wait(number) else b""
             except OSError as cause:
-                # The window stays open, and outputs are written, with the words that were read.
-                run.fail(unreadable(cause))
+                # The window stays open, and outputs are written, with the words that were read. The file is
+                # closed once the window is.
+                if cause.errno != errno.EBADF:
+                    run.fail(unreadable(cause))
                 return b""
 
         if in_window:
@@ -131,7 +139,7 @@ def play(
             cut = pipe.stream_pieces(read, display.configuration, is_cut)
             fields = pipe.stream_fields(server.session, cut, lambda: run.ends)
             write_fields(film, fields, run, fps, not once, force)
-        tell_the_end(server.session)
+        tell_the_end(server.session, run)
     if run.signal:
         raise Ended(run.signal)
 

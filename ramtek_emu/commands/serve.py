@@ -148,7 +148,10 @@ def serve(
                     server.step(STEP_SECONDS)
                 if isinstance(server, PipeServer):
                     server.finish(lambda: run.ends)
-            (tell_the_end if stdio else tell_unexecuted)(server.session)
+            if stdio:
+                tell_the_end(server.session, run)
+            else:
+                tell_unexecuted(server.session)
 
 
 def watch(server: Server, run: Run, obey: Callable[[], object], inspect: bool) -> None:

@@ -22,8 +22,8 @@ def write_bars(
     """Draw a bar for each value, (n,), with a word; returns the point where the next bar would begin.
 
     A bar covers as many places along the scan as the dimension says: elements, or lines if the scan is
-    vertical. Across the scan it goes from the base line to its value, both included. The generator yields
-    None after 64 places.
+    vertical. Across the scan it goes from the base line to its value, both included. A pixel of several bars
+    is written once, and counts once. The generator yields None after 64 places.
     """
     order, width = parameters.order, max(1, parameters.dimensions[0])
     backward = order.upward if order.vertical else order.leftward

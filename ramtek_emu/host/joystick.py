@@ -85,7 +85,7 @@ class JoystickLines:
 
 
 def opened(path: str) -> int:
-    """The descriptor of the opened file, stdin for `-`; MissingInputError if it cannot be read."""
+    """The descriptor of the opened file, stdin for `-`; MissingInputError if it cannot be opened."""
     try:
         if path == "-" and sys.stdin is not None:
             return os.dup(sys.stdin.fileno())
@@ -93,6 +93,6 @@ def opened(path: str) -> int:
         return os.open(path, os.O_RDWR)
     except (OSError, ValueError) as cause:
         raise MissingInputError(
-            f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} "
+            f"a joystick's lines must come from a file or a FIFO that can be read and written, not {path!r} "
             f"({reason_of(cause)}); make a FIFO with mkfifo, or give - for stdin"
         ) from None

@@ -56,7 +56,7 @@ class PipeServer(Server):
 
     def finish(self, ends: Callable[[], bool]) -> None:
         """Wait until the replies to a host that has left are written, or until `ends()` is true."""
-        while self._replying.is_alive() and not ends():
+        while not ends() and self._replying.is_alive():
             self._replying.join(0.1)
 
     def _accept(self, seconds: float) -> bool:
@@ -81,7 +81,8 @@ class PipeServer(Server):
     def _copy_replies(self) -> None:
         with self._copied, suppress(OSError):
             while data := self._copied.recv(READ_BYTES):
-                with suppress(ConnectionError):
+                # The words of a host that cannot take its replies are still executed.
+                with suppress(OSError):
                     self._write(data)
 
 

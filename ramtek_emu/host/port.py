@@ -14,6 +14,7 @@ import re
 import selectors
 import socket
 import struct
+import sys
 import time
 from contextlib import suppress
 from types import TracebackType
@@ -167,7 +168,9 @@ class SocketPort:
             return
         deadline = time.monotonic() + self.timeout
         with self.socket:
-            self._exchange(time.monotonic())
+            # What has arrived may end with the display's refusal of this host.
+            while ready(self.socket, selectors.EVENT_READ, 0) and time.monotonic() < deadline:
+                self._exchange(deadline)
             try:
                 self.socket.shutdown(socket.SHUT_WR)
                 while (left := deadline - time.monotonic()) > 0 and ready(
@@ -289,7 +292,9 @@ class UnixPort(SocketPort):
 def packet_socket() -> socket.socket:
     """A Unix socket that keeps the boundaries of writes; PortError where the system has none."""
     try:
-        return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        if sys.platform != "win32":
+            return socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        raise OSError("there are none")
     except (AttributeError, OSError) as cause:
         raise PortError(
             "a system must have Unix sockets that keep the boundaries of writes (SOCK_SEQPACKET), and this "

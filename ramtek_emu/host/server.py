@@ -27,6 +27,7 @@ import secrets
 import selectors
 import socket
 import stat
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -432,8 +433,10 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
     """Listen at a path, which then names the socket; returns the state of its file.
 
     The name appears when the socket listens already, so that no host that finds it is refused. Before, the
-    socket has a hidden name in the same folder.
+    socket has a hidden name in the same folder, which only Linux can name by its descriptor.
     """
+    if sys.platform != "linux":
+        raise OSError("packet sockets are of Linux")
     # The socket's file gets the permissions of the socket: set them before the file exists.
     os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
     folder = os.open(os.path.dirname(path) or ".", os.O_PATH)
@@ -461,6 +464,8 @@ def remove_stale_socket(path: str) -> None:
 
     OSError if the path is too long for a socket.
     """
+    if sys.platform != "linux":
+        raise OSError("packet sockets are of Linux")
     # A running server refuses a socket of another type and is not disturbed.
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
         refusal = asking.connect_ex(path)

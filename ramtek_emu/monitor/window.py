@@ -258,10 +258,16 @@ class Monitor:
 
         self._film = None
         fields, data, reason = film.fields, film.end(time.monotonic()), ""
-        for folder in (self.screenshots, Path(tempfile.gettempdir()), Path.home()):
+        # Without a folder for temporary files, or a home, asking for it raises an error.
+        folders: tuple[Callable[[], str | Path], ...] = (
+            lambda: self.screenshots,
+            tempfile.gettempdir,
+            Path.home,
+        )
+        for folder in folders:
             try:
-                path = write_numbered(data, folder, self.file_name, FILM)
-            except RamtekError as refusal:
+                path = write_numbered(data, Path(folder()), self.file_name, FILM)
+            except (RamtekError, OSError, RuntimeError) as refusal:
                 reason = reason or f"{refusal}; "
                 continue
             return f"{reason}saved {path}, {fields:,} {'field' if fields == 1 else 'fields'}"

@@ -14,7 +14,9 @@ from __future__ import annotations
 
 from typing import Final, TypeVar
 
-from ramtek_emu.arrays import Indices
+import numpy as np
+
+from ramtek_emu.arrays import Indices, Words
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.memory.parameters import Parameters
 
@@ -64,3 +66,38 @@ def shown_at(place: Place, origin: int, zoom: int, size: int) -> Place:
     [638, 638, 639, 639, 0, 0]
     """
     return (origin + place // zoom) % size
+
+
+def copy_shown(target: Indices, first: int, memory: Words, parameters: Parameters, shown_lines: int) -> None:
+    """Fill the target, lines of the screen from `first` on, with the words of the memory that they show.
+
+    The words are those of `pixel_at`. Measured: taking them by its indices takes four times as long.
+    """
+    if parameters.origin_at_bottom:
+        target, first = target[::-1], shown_lines - first - len(target)
+    origin, (across, down) = parameters.origin, parameters.zoom
+    if (across, down) == (1, 1):
+        for rows, memory_rows in parts(origin.line + first, memory.shape[0], target.shape[0]):
+            for columns, memory_columns in parts(origin.element, memory.shape[1], target.shape[1]):
+                target[rows, columns] = memory[memory_rows, memory_columns]
+        return
+    # Zoom each line of the memory once, then repeat it.
+    begin, end = first // down, (first + len(target) - 1) // down + 1
+    taken = memory.take(shown_at(np.arange(begin, end), origin.line, 1, memory.shape[0]), axis=0)
+    elements = shown_at(np.arange(target.shape[1]), origin.element, across, memory.shape[1])
+    zoomed = taken.take(elements, axis=1, mode="clip")
+    target[...] = zoomed.repeat(down, axis=0)[first % down :][: len(target)]
+
+
+def parts(first: int, size: int, count: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    """Cut `count` places of the screen where the memory wraps; each part is beside its places in the memory.
+
+    >>> parts(638, 640, 6)
+    ((slice(0, 2, None), slice(638, 640, None)), (slice(2, 6, None), slice(0, 4, None)))
+    """
+    first %= size
+    before = min(size - first, count)
+    return (
+        (slice(0, before), slice(first, first + before)),
+        (slice(before, count), slice(0, count - before)),
+    )

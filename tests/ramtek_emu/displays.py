@@ -17,7 +17,8 @@ def smallest_slices() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         for limit in (
             "drawing.vectors.MOST_POINTS",
-            "drawing.areas.MOST_AT_ONCE",
+            "drawing.areas.PIXELS_AT_ONCE",
+            "drawing.areas.RUNS_AT_ONCE",
             "video.scan_out.PAINTED_AT_ONCE",
         ):
             patch.setattr(f"ramtek_emu.{limit}", 1)

@@ -101,6 +101,7 @@ REFUSED: list[tuple[list[object], int, str]] = [
     (["--film", "a.webp", "--every", 0], 2, "'--every': 0 is not in the range"),
     (["--film", "a.webp", "--loads-per-second", 9], 2, "--loads-per-second must not be given with an output"),
     (["--film", "a.webp", "--record", "a.webp"], 2, "two outputs must be two files"),
+    (["--film", "a-{number}.png", "-o", "a-1.png"], 2, "two outputs must be two files"),
     (["-o", "a.png", "--every", 3], 2, "--every must not be given without --film, where it has no effect"),
     (["--once"], 2, "--once must not be given without --film, where it has no effect"),
 ]
@@ -178,7 +179,8 @@ def test_an_interrupted_film_has_the_frames_so_far(tmp_path: Path) -> None:
         assert process.stderr is not None
         messages = process.stderr.read()
     assert b"{number}.png\n" in messages
-    assert b"the stream ends within an instruction: its 2 words were dropped" in messages
+    # The signal came first: the end of the stream is not known.
+    assert b"the stream ends" not in messages
     numbers = sorted(int(path.stem) for path in tmp_path.glob("[0-9]*.png"))
     assert numbers in ([1, 2], [1, 2, 3])
     assert np.array_equal(field_of(tmp_path / f"{numbers[-1]}.png"), field_of(tmp_path / "end.png"))

@@ -45,13 +45,32 @@ def test_the_last_replies_to_a_host_are_written_before_the_end() -> None:
         replies.append(data)
 
     with PipeServer(Ramtek9300(), pop_of(pieces), write) as pipe:
+        # A signal ends the wait, also before the host was served.
+        pipe.finish(lambda: True)
         until(lambda: not pipe.step() and pipe.served == 1)
-        # A signal ends the wait.
         pipe.finish(lambda: True)
         assert not replies
         is_over.set()
         pipe.finish(lambda: False)
     assert b"".join(replies) == 100 * b"\7\0"
+
+
+def test_the_words_of_a_host_whose_replies_are_lost_are_executed() -> None:
+    lost, sent = threading.Event(), iter([instructions.read_cursor(0), words("0902 0044 7 0 0 9 9")])
+
+    def read(_: int) -> bytes:
+        stream = next(sent, None)
+        if stream is not None and stream[0] >> 8 == 9:
+            lost.wait(60)
+        return b"" if stream is None else stream.astype("<u2").tobytes()
+
+    def write(_: bytes) -> None:
+        lost.set()
+        raise OSError("the disk is full")
+
+    with PipeServer(Ramtek9300(), read, write) as pipe:
+        until(lambda: not pipe.step() and pipe.served == 1)
+        assert pipe.display.words[9, 9] == 7
 
 
 def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) -> None:

@@ -144,6 +144,15 @@ def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host(tmp_path:
         port.close()
 
 
+def test_a_host_that_was_turned_away_with_unread_replies_is_told_at_closing() -> None:
+    with serving(idle_seconds=0.2) as server:
+        port = TcpPort(server.address, timeout=60)
+        port.send(instructions.read_cursor(0))
+        until(lambda: server.served == 1)
+        with pytest.raises(PortError, match="it closed the connection"):
+            port.close()
+
+
 def test_a_silent_host_holds_up_the_line_no_longer_than_its_limit() -> None:
     with serving(idle_seconds=0.3) as server, connected(server), connected(server):
         until(lambda: server.busy)

@@ -91,6 +91,11 @@ def test_a_running_display_forgets_its_past_before_memory_is_full(monkeypatch: p
         session.go(number)
         shown.append((session.state.number, session.display.words[0, 5], session.display.words[0, 0]))
     assert shown == [(0, 5, 0), (begin + 1, 5, 5), (begin + 2, 5, 6)]
+    # It is also so in a pause, where a joystick may still move.
+    monkeypatch.setattr(module, "MOST_BYTES", 0)
+    session.tick()
+    assert (session.state.number, session.state.target, session.state.length) == (0, 0, 0)
+    assert len(panels.listing(session.state)) == 1
 
 
 @pytest.mark.usefixtures("small_pieces")

@@ -194,10 +194,15 @@ def show_load(monitor: Monitor, red: int) -> Colors:
     return monitor.display.field()
 
 
+def no_home() -> Path:
+    raise RuntimeError("the user has no home")
+
+
 def test_a_recording_has_the_fields_that_were_shown_with_their_times(
     monitor: Monitor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = Clock(monkeypatch)
+    monkeypatch.setattr(Path, "home", no_home)
     (tmp_path / "ramtek-0001.webp").write_bytes(b"mine")
     fields = [show_load(monitor, 10)]
     press(monitor, pygame.K_F3)
@@ -290,7 +295,7 @@ def test_a_recording_that_cannot_be_saved_goes_to_another_folder(
     assert messages[0].endswith(f"; saved {path.resolve()}, 2 fields")
     assert np.array_equal(decoded(path), fields)
     # Without any folder, the film is lost.
-    elsewhere.rename(tmp_path / "gone")
+    monkeypatch.setattr(Path, "home", no_home)
     press(monitor, pygame.K_F3)
     press(monitor, *QUIT)
     assert capsys.readouterr().err.endswith("the film is lost: no folder could take it\n")
