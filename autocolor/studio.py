@@ -334,7 +334,7 @@ class Studio(Suggesting):
         return True
 
     def view_back(self) -> bool:
-        """Return to the view before the last turn; returns False if there is none since the scene was opened."""
+        """Return to the view before; returns False if there is none since the scene was opened."""
         timeline = self._history.timeline
         if timeline.views_back:
             after = timeline.turned_back()

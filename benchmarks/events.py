@@ -22,6 +22,8 @@ from typing import Any, NamedTuple
 
 import autocolor
 from autocolor.commands.window import connected
+from autocolor.screens.steps import switch_split
+from autocolor.screens.surface.painting import change_paint
 from autocolor.screens.viewer import Viewer
 from benchmarks.hills import hills, side_of
 from benchmarks.movement import screen
@@ -231,8 +233,8 @@ def legend_of(bench: Bench) -> tuple[int, int]:
 def split(bench: Bench) -> None:
     """A color that is compared with the color before, side by side."""
     session = bench.viewer.session
-    session.paint(object_color="#2040b0")
-    session.switch_split()
+    change_paint(session, object_color="#2040b0")
+    switch_split(session)
     bench.viewer.tell("")
 
 

@@ -82,7 +82,7 @@ def view(
 
     def prepare(viewer: Viewer) -> None:
         # Meshes that the user opens later get the same up axis and scale.
-        viewer.session.place_meshes(source.up, source.scale)
+        viewer.session.mesh_up, viewer.session.mesh_scale = source.up, source.scale
         bring(viewer)
 
     show(history, prepare=prepare, waiting=waiting)

@@ -172,7 +172,7 @@ class History:
 
     @property
     def to_undo(self) -> tuple[Scene, ...]:
-        """The scenes before each step that can be undone, the last step last, each in the view of its time."""
+        """The scene before each step that can be undone, the last step last, in the view of its time."""
         return tuple(each.scene for each in self.timeline.to_undo)
 
     @property

@@ -1,4 +1,4 @@
-"""The timeline of a session: the present scene, the looks to undo and to redo, and the views back and forward.
+"""The timeline of a session: the present scene, looks to undo and to redo, and views back and forward.
 
 A look is all of a scene but its view. Undo and redo exchange looks, and the present view stays. Views have
 a way back and forward of their own, until another scene is opened: each scene has its own view, even if the

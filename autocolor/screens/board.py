@@ -22,6 +22,7 @@ from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items
 from autocolor.screens.screen import Handle, Sample, Screen
 from autocolor.screens.session import HISTORY, PICTURE, Session
+from autocolor.screens.steps import redo, switch_comparing, switch_split, undo
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
@@ -780,16 +781,16 @@ def last_rows(session: Session, screen: Screen) -> list[Widget]:
     """The rows at the end of every page of every menu: undo, and over the picture comparing."""
     history = session.studio.history
     can_undo, can_redo = bool(history.to_undo), bool(history.to_redo)
-    undo = UndoRow(
+    row = UndoRow(
         " ",
         "Undo the last step, or redo it; between, the list of all steps.",
         "" if can_undo or can_redo else "there is no step to undo",
-        step=lambda amount: session.undo() if amount < 0 else session.redo(),
+        step=lambda amount: undo(session) if amount < 0 else redo(session),
         can_undo=can_undo,
         can_redo=can_redo,
         show_history=partial(session.turn_to, PICTURE if session.screen == HISTORY else HISTORY),
     )
-    return [Gap("undo gap"), undo, *([compare_row(session)] if screen.shows_picture else [])]
+    return [Gap("undo gap"), row, *([compare_row(session)] if screen.shows_picture else [])]
 
 
 def compare_row(session: Session) -> Widget:
@@ -800,8 +801,8 @@ def compare_row(session: Session) -> Widget:
     return Pair(
         "compare",
         f"Show {other.name}, and the present state again; or both, left and right of a line.",
-        run=session.switch_comparing,
+        run=partial(switch_comparing, session),
         other="split",
-        run_other=session.switch_split,
+        run_other=partial(switch_split, session),
         is_chosen=session.comparing.is_on,
     )

@@ -28,6 +28,15 @@ from autocolor.images import LARGEST, SMOOTHNESS, SMOOTHNESSES, display_image, s
 from autocolor.journal.saving import free_name
 from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import BACKGROUND
+from autocolor.screens.file_actions import (
+    check_reach,
+    export,
+    may_reach,
+    open_file,
+    save,
+    save_image,
+    save_rig,
+)
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.sending import configuration_of
@@ -147,12 +156,12 @@ class FileScreen(Screen):
             self._export()
 
     def _look_up_recent(self) -> None:
-        recent = [Openable(path, kind_of(path)) for path in recent_files() if self.session.may_reach(path)]
+        recent = [Openable(path, kind_of(path)) for path in recent_files() if may_reach(self.session, path)]
         self._recent = [each for each in recent if each.kind]
 
     def _list(self, folder: Path) -> None:
         """Show a folder as it is now. Raises InputError if it cannot be read."""
-        self._files = [each for each in openables_of(folder) if self.session.may_reach(each.path)]
+        self._files = [each for each in openables_of(folder) if may_reach(self.session, each.path)]
         self.session.folder = folder
         self._page, self._notes, self._thumbnail = 0, {}, None
 
@@ -242,7 +251,7 @@ class FileScreen(Screen):
     @property
     def _has_way_up(self) -> bool:
         folder = self.session.folder
-        return folder.parent != folder and self.session.may_reach(folder.parent)
+        return folder.parent != folder and may_reach(self.session, folder.parent)
 
     def widgets(self) -> Sequence[Widget]:
         rows: list[Widget] = []
@@ -289,25 +298,25 @@ class FileScreen(Screen):
             Button(
                 "save",
                 f"{saves} {folder}",
-                run=partial(self._save, session.save),
+                run=partial(self._save, partial(save, session)),
                 value=changed,
             ),
             Entry(
                 "save as",
                 f"Save under another name in {folder}; from then on, save writes these files.",
                 value=free_name(session.scene.name, session.folder),
-                take=lambda name: self._save(lambda: session.save(name.strip())),
+                take=lambda name: self._save(lambda: save(session, name.strip())),
                 is_proposed=True,
             ),
             Button(
                 "save the rig",
                 f"Save all lights in {folder}, to put them on another scene.",
-                run=partial(self._save, session.save_rig),
+                run=partial(self._save, partial(save_rig, session)),
             ),
             Button(
                 "screenshot",
                 f"Save the picture as a numbered image in {folder}, without menus.",
-                run=partial(self._save, session.save_image),
+                run=partial(self._save, partial(save_image, session)),
             ),
             Gap("export gap"),
             Button(
@@ -367,13 +376,13 @@ class FileScreen(Screen):
     def _open(self, path: Path) -> None:
         self._check(path)
         before = self.session.screen
-        self.session.open(path)
+        open_file(self.session, path)
         if self.session.screen == before:
             # Paints turn to the screen that shows them.
             self.session.turn_to(PICTURE)
 
     def _check(self, path: Path) -> None:
-        self.session.check_reach(path, "a file to open")
+        check_reach(self.session, path, "a file to open")
 
     def _save(self, save: Callable[[], object]) -> None:
         save()
@@ -395,7 +404,7 @@ class FileScreen(Screen):
         """Export the image; a message says its name, or why there is none."""
         self._ticks_to_export = 0
         try:
-            self.session.export(self._size, self._smooth)
+            export(self.session, self._size, self._smooth)
         except AutocolorError as error:
             self.session.warn(error)
 

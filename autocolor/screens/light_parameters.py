@@ -12,9 +12,9 @@ from autocolor.checks import Vector
 from autocolor.scene.columns import fields_of
 from autocolor.scene.following import names_to_follow
 from autocolor.scene.lights import AXIS_CONTROLS, EYE, Light
-from autocolor.screens.session import Session
+from autocolor.screens.session import Session, Solo
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Choice, Widget
+from autocolor.widgets.widget import Choice, Widget, titled
 
 POINT: Final = "point source"
 DIRECTION: Final = "direction"
@@ -92,7 +92,7 @@ def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
     if "cone_angle" in changes and inner is not None:
         outer = changes["cone_angle"]
         changes = {"inner_angle": None if outer is None else min(inner, outer), **changes}
-    session.change_light(name, **changes)
+    session.edit(session.scene.with_light(name, **changes))
     if "name" in changes:
         session.choose_light(str(changes["name"]))
 
@@ -156,3 +156,33 @@ def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) 
 
 def _default(name: str) -> object:
     return fields_of(Light)[name].default
+
+
+# Solo: one light on, and all others off.
+
+
+def solo_light(session: Session) -> str:
+    """The name of the light that was switched on alone, while it still is; else empty."""
+    on = [light.name for light in session.scene.lights if light.on]
+    return on[0] if session.before_solo is not None and on == [session.before_solo.name] else ""
+
+
+def light_alone(session: Session, name: str) -> None:
+    """Switch one light on and all others off; if it is alone, switch all as before."""
+    scene, before, alone = session.scene, session.before_solo, solo_light(session)
+    if before is not None and alone == name:
+        switches = [before.switches.get(light.name, light.on) for light in scene.lights]
+        lights = zip(scene.lights, switches, strict=True)
+        session.edit(scene.replace(lights=tuple([light.replace(on=on) for light, on in lights])))
+        session.tell("the lights are switched as before")
+        return
+    session.edit(scene.only_lights(name))
+    switches_now = {light.name: light.on for light in scene.lights}
+    session.before_solo = Solo(name, before.switches if before is not None and alone else switches_now)
+    session.tell(f"{titled('light', name)} alone; again: the lights as before")
+
+
+def all_lights_on(session: Session) -> None:
+    """Switch all lights on."""
+    session.edit(session.scene.with_all_lights_on())
+    session.tell("all lights on")

@@ -19,8 +19,9 @@ from autocolor.scene.creation import new_light_of
 from autocolor.scene.following import attached, detached
 from autocolor.scene.lights import HalfSpace, Light, free_name
 from autocolor.scene.view import View
+from autocolor.screens.file_actions import save_rig
 from autocolor.screens.input import Gesture
-from autocolor.screens.light_parameters import KIND, parameter_rows
+from autocolor.screens.light_parameters import KIND, all_lights_on, light_alone, parameter_rows, solo_light
 from autocolor.screens.picture.light_handles import LightHandles, highlight_items
 from autocolor.screens.picture.over_picture import OverPicture, exposure_row
 from autocolor.screens.screen import Handle
@@ -176,7 +177,11 @@ class LightsScreen(OverPicture):
                 other="remove",
                 run_other=self._remove,
             ),
-            Button("save the rig", "Save all lights, to put them on another scene.", run=session.save_rig),
+            Button(
+                "save the rig",
+                "Save all lights, to put them on another scene.",
+                run=partial(save_rig, session),
+            ),
         ]
 
     def _add(self) -> None:
@@ -260,7 +265,9 @@ class LightList:
                 rows.append(self._row(number, light))
             if pages > 1:
                 rows.append(page_choice("The next page of lights.", page, pages, self._turn))
-            rows.append(Button("all lights on", "Switch all lights on.", run=self._session.all_lights_on))
+            rows.append(
+                Button("all lights on", "Switch all lights on.", run=partial(all_lights_on, self._session))
+            )
         left, top = LIST_AT
         right = left + LIST_ELEMENTS - 1
         return [
@@ -278,14 +285,14 @@ class LightList:
             within="light list",
             value=light.intensity,
             **bar._asdict(),
-            put=lambda intensity: session.change_light(name, intensity=intensity),
+            put=lambda intensity: session.edit(session.scene.with_light(name, intensity=intensity)),
             numeral=number,
             is_on=light.on,
             is_chosen=name == session.light_name,
-            is_solo=name == session.solo,
+            is_solo=name == solo_light(session),
             choose=partial(session.choose_light, name),
-            switch=lambda: session.change_light(name, on=not light.on),
-            solo=partial(session.light_alone, name),
+            switch=lambda: session.edit(session.scene.with_light(name, on=not light.on)),
+            solo=partial(light_alone, session, name),
         )
 
     @property
@@ -452,7 +459,7 @@ class PlanePicking:
         half_space = HalfSpace.through(name, *self._points)
         if not is_lit_side(half_space, light, scene.view):
             half_space = turned(half_space)
-        session.change_light(light.name, half_spaces={name: half_space})
+        session.edit(session.scene.with_light(light.name, half_spaces={name: half_space}))
         session.tell(f"half-space added to {light.name}: {name}")
 
 
@@ -523,7 +530,7 @@ def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widg
     usual = session.world.range_of_lengths(is_zero_left_out=False)
 
     def put(**changes: object) -> None:
-        session.change_light(light.name, half_spaces={name: changes})  # type: ignore[dict-item]
+        session.edit(session.scene.with_light(light.name, half_spaces={name: changes}))  # type: ignore[dict-item]
 
     return [
         Switch(name, helps["on"], is_on=half_space.on, flip=lambda: put(on=not half_space.on)),
@@ -559,9 +566,9 @@ def _carry(session: Session, light: Light, half_space: HalfSpace) -> None:
 
 
 def _put_row(session: Session, light: Light, half_space: HalfSpace) -> None:
-    session.change_light(light.name, half_spaces={half_space.name: half_space})
+    session.edit(session.scene.with_light(light.name, half_spaces={half_space.name: half_space}))
 
 
 def _remove(session: Session, light: Light, name: str) -> None:
-    session.change_light(light.name, half_spaces={name: None})
+    session.edit(session.scene.with_light(light.name, half_spaces={name: None}))
     session.tell(f"{titled('half-space', name)} removed; undo brings it back")

@@ -6,9 +6,8 @@ when it is drawn, nor whether the mouse, the joystick unit or a key points.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from operator import is_
-from typing import ClassVar, Generic, NamedTuple, TypeVar
+from collections.abc import Sequence
+from typing import ClassVar, NamedTuple, TypeVar
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
@@ -196,25 +195,3 @@ def page_of(rows: Sequence[AnyRow], number: int, rows_a_page: int) -> tuple[Sequ
     first = number % pages * rows_a_page
     turn = f"page {number % pages + 1} of {pages}; a click, the wheel or Space: the next page"
     return rows[first : first + rows_a_page], turn if pages > 1 else ""
-
-
-Value = TypeVar("Value")
-
-
-class Cached(Generic[Value]):
-    """The last computed value, for as long as its sources are the same objects.
-
-    Sources are compared by identity: an edited scene shares all unchanged objects with the scene before.
-    """
-
-    def __init__(self) -> None:
-        self._sources: tuple[object, ...] | None = None
-        self._value: Value
-
-    def of(self, compute: Callable[[], Value], *sources: object) -> Value:
-        """The value of some sources, computed if one of them is another object than before."""
-        cached = self._sources
-        if cached is None or len(cached) != len(sources) or not all(map(is_, cached, sources)):
-            self._value = compute()
-            self._sources = sources
-        return self._value

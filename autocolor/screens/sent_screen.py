@@ -14,8 +14,10 @@ from textwrap import wrap
 from typing import Final, NamedTuple
 
 from autocolor.journal.description import describe
-from autocolor.screens.screen import Cached, Pages, page_of
-from autocolor.screens.session import MOST_DESCRIBED, SENT, LastEdit, Session
+from autocolor.screens.cached import Cached
+from autocolor.screens.comparing import MOST_DESCRIBED
+from autocolor.screens.screen import Pages, page_of
+from autocolor.screens.session import SENT, LastEdit, Session
 from autocolor.sending import configuration_of
 from autocolor.widgets.items import CHARACTER, GRAY, LIGHT_GRAY, WHITE, WIDTH, YELLOW, Item, text
 from ramtek_emu import Configuration, EntryFormat

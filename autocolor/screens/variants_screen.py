@@ -19,8 +19,10 @@ from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import BACKGROUND, SCREENS
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
+from autocolor.screens.comparing import BEFORE, NamedScene
 from autocolor.screens.screen import Screen
-from autocolor.screens.session import BEFORE, PICTURE, NamedScene, Session
+from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.steps import compare
 from autocolor.widgets.items import (
     CHARACTER,
     GRAY,
@@ -234,7 +236,7 @@ class VariantsScreen(Screen):
         session, name = self.session, self._present
         session.comparing.choose(NamedScene(f"variant {name}", session.studio.variants[name].scene))
         session.turn_to(PICTURE)
-        session.compare()
+        compare(session)
 
     def _compare_with_before(self) -> None:
         self.session.comparing.choose(None)

@@ -19,7 +19,20 @@ from autocolor.journal.history import History
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, cost_of_edit
 from autocolor.screens.board import Board
+from autocolor.screens.effects import tell_effect
 from autocolor.screens.entries_screen import EntriesScreen
+from autocolor.screens.file_actions import (
+    FileOnDisk,
+    bring_paints,
+    lying,
+    open_file,
+    read_again,
+    save,
+    save_image,
+    save_screenshot,
+    take_changes,
+    unsaved_changes,
+)
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
 from autocolor.screens.input import Binding, Chord, Gesture, Mouse, Unit, bound_to
@@ -36,11 +49,12 @@ from autocolor.screens.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
 from autocolor.screens.sent_screen import SentScreen
 from autocolor.screens.session import PICTURE, SENT, LastEdit, Session
+from autocolor.screens.steps import compare, end_comparing, redo, undo
 from autocolor.screens.surface.blending_screen import BlendingScreen
 from autocolor.screens.surface.mixing_screen import MixingScreen
+from autocolor.screens.surface.painting import take_paint
 from autocolor.screens.surface.reflectance_screen import ReflectanceScreen
 from autocolor.screens.variants_screen import VariantsScreen
-from autocolor.sending import configuration_of
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sent, Sheet
 from ramtek_emu import HostPort, PortError, RamtekError, ReplyError
@@ -85,7 +99,7 @@ class Action:
 
     def warns_of_changes(self, otherwise: str) -> bool:
         """Whether unsaved changes forbid an attempt. They are announced once; the next attempt succeeds."""
-        unsaved = self._session.unsaved
+        unsaved = unsaved_changes(self._session)
         if not unsaved or self.is_warned:
             return False
         self.is_warned = True
@@ -147,6 +161,7 @@ class Viewer:
         self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
         self.session.keys = rows_of_help()
+        self._disk = FileOnDisk(self.studio)
         self._action = Action(self.session)
         self._drags = 0
         """How many drags and picks there were."""
@@ -157,8 +172,8 @@ class Viewer:
         """The words of the studio's picture when that page was shown."""
         self._mouse.forget()
         self._sheet.forget()
-        lying = f"; {self.session.lying}" if self.session.lying else ""
-        self.session.tell(f"F1: help; Tab or the right edge: the menu{lying}", persistent=True)
+        hints = "F1: help", "Tab or the right edge: the menu", lying(self.session)
+        self.session.tell("; ".join(filter(None, hints)), persistent=True)
         self._update()
         self._unit.show()
 
@@ -207,9 +222,7 @@ class Viewer:
         self._update()
         return taken
 
-    def _press(
-        self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool
-    ) -> bool:
+    def _press(self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool) -> bool:
         """Offer a key to the typed text, the menu, the screen and the key bindings, in this order."""
         if not control and not alt and self._type(name, typed, repeated):
             return True
@@ -311,12 +324,12 @@ class Viewer:
             self._update()
         elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
             self._update()
-        if rests and not self.board.is_dragging and self.session.tell_effect():
+        if rests and not self.board.is_dragging and tell_effect(self.session):
             self._update()
 
     def _take_changes(self) -> None:
         """Show the changes that another program made to the scene's file."""
-        if self.session.disk.was_changed() and self._reopen_by(self.session.take_changes):
+        if self._disk.was_changed() and self._reopen_by(lambda: take_changes(self.session, self._disk)):
             self._update()
 
     def _reopen_by(self, run: Callable[[], object]) -> bool:
@@ -338,7 +351,7 @@ class Viewer:
 
     def bring_paints(self, paints: Palette, name: str) -> None:
         """Let the user take colors from the paints of a file of this name."""
-        self.session.bring_paints(paints, name)
+        bring_paints(self.session, paints, name)
         self._update()
 
     def _update(self) -> None:
@@ -394,7 +407,7 @@ class Viewer:
 
     def on_drop(self, path: Path) -> None:
         """Open a file that was dropped on the window, as one step to undo."""
-        self._reopen_by(lambda: self.session.open(path))
+        self._reopen_by(lambda: open_file(self.session, path))
         self._update()
 
     def on_close(self) -> bool:
@@ -424,7 +437,7 @@ class Viewer:
         """Show the state to compare with, over the picture."""
         if not self.board.screen.shows_picture:
             self.session.turn_to(PICTURE)
-        self.session.compare()
+        compare(self.session)
 
     def escape(self) -> bool:
         """Take a drag back, close what is open, or return to the picture.
@@ -449,12 +462,12 @@ class Viewer:
     def undo(self) -> None:
         """Undo the last step."""
         self._show_scene()
-        self.session.undo()
+        undo(self.session)
 
     def redo(self) -> None:
         """Redo the last undone step."""
         self._show_scene()
-        self.session.redo()
+        redo(self.session)
 
     def _show_scene(self) -> None:
         # The step may remove the thing that is dragged or typed into.
@@ -466,7 +479,7 @@ class Viewer:
     def reopen(self) -> None:
         """Read the scene's file again, as one step to undo."""
         self._show_scene()
-        self.session.reopen()
+        read_again(self.session)
 
     def take_sample(self, is_color: bool) -> None:
         """Take the paint of the surface under the pointer, or the color that is seen there.
@@ -479,7 +492,7 @@ class Viewer:
         if is_color:
             self.board.take_color(sample.color)
         else:
-            self.session.take_paint(sample.surface)
+            take_paint(self.session, sample.surface)
 
     def copy(self) -> None:
         """Copy the color or the text under the pointer to the clipboard; UsageError if there is none."""
@@ -509,9 +522,7 @@ class Viewer:
         """Save what the display shows, without message and cursors, as the next screenshot."""
         page = self.board.page()
         self._sheet.show(page)
-        sizes = configuration_of(self.display)
-        words = self.session.words_at(0, 0, sizes.shown_elements, sizes.shown_lines)
-        self.session.save_screenshot(page.entries[words])
+        save_screenshot(self.session, page.entries[self._sheet.words()])
 
     def clear(self) -> None:
         """Leave the picture alone on the display, with its legend, without panels, message and cursors."""
@@ -673,7 +684,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         (Chord("b"),),
         "while held: the state before the last step",
         lambda viewer, _: viewer.compare(),
-        release=lambda viewer: viewer.session.end_comparing(),
+        release=lambda viewer: end_comparing(viewer.session),
     ),
     Binding(
         (Chord("left", alt=True), Chord("right", alt=True)),
@@ -691,13 +702,13 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding(
         (Chord("s", control=True),),
         "save the picture with its scene",
-        lambda viewer, _: viewer.session.save(),
+        lambda viewer, _: save(viewer.session),
     ),
     Binding((Chord("f12"),), "save a numbered screenshot", lambda viewer, _: viewer.save_screen()),
     Binding(
         (Chord("f12", shift=True),),
         "save the picture alone under the next number",
-        lambda viewer, _: viewer.session.save_image(),
+        lambda viewer, _: save_image(viewer.session),
     ),
     Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: viewer.reopen()),
     Binding(

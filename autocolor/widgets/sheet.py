@@ -78,6 +78,15 @@ class Sheet:
         self._page = page
         return Sent(stream, sum(map(len, entries)), sum(map(len, base)))
 
+    def words(self) -> Words:
+        """The words that are shown, (lines, elements), read back from the display."""
+        left, top, right, bottom = self._whole
+        parts = []
+        for read, count in instructions.read_image(left, top, right + 1, bottom + 1):
+            self._display.send(read)
+            parts.append(self._display.receive(count))
+        return np.concatenate(parts).reshape(bottom + 1, right + 1)
+
     def _changes(self, page: Page) -> tuple[list[Words], list[Words], list[Words]]:
         """The instructions that change the display from the page before to this page.
 

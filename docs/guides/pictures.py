@@ -19,6 +19,7 @@ import numpy as np
 from PIL import Image
 
 from autocolor import read_palette
+from autocolor.screens.file_actions import bring_paints
 from autocolor.screens.viewer import Viewer
 from docs.generate.blocks import blocks_of, commands_of
 from docs.generate.commands import ROOT, here
@@ -104,7 +105,7 @@ def light_exposure() -> Field:
 def studio_mixing() -> Field:
     """Color mixing, with the paints of a file, of which the pointer takes one."""
     with open_viewer("coupe", "mixing") as (viewer, display):
-        viewer.session.bring_paints(read_palette(ROOT / "examples" / "paints.gpl"), "paints.gpl")
+        bring_paints(viewer.session, read_palette(ROOT / "examples" / "paints.gpl"), "paints.gpl")
         viewer.tell("")
         click_at(viewer, *COBALT)
         return display.field()
@@ -124,7 +125,8 @@ def studio_split() -> Field:
 def studio_explain() -> Field:
     """The explanation of a pixel of the hood."""
     with open_viewer("coupe", "picture") as (viewer, display):
-        viewer.session.explain(*EXPLAINED)
+        viewer.session.pixel = EXPLAINED
+        viewer.session.turn_to("explain")
         viewer.tell("")
         idle(viewer)
         return display.field()
@@ -133,7 +135,7 @@ def studio_explain() -> Field:
 def studio_sent() -> Field:
     """The listing of an edit of the body's object color."""
     with open_viewer("coupe", "picture") as (viewer, display):
-        viewer.session.change_surface("body", paint={"object_color": "#2348c8"})
+        viewer.session.edit(viewer.session.scene.with_surface("body", paint={"object_color": "#2348c8"}))
         viewer.tell("")
         viewer.session.turn_to("sent")
         viewer.tell("")

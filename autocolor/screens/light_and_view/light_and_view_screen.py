@@ -17,6 +17,7 @@ from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import FRONTS
+from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.handles import (
     AIM,
@@ -43,7 +44,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
 from autocolor.screens.light_parameters import KIND, parameter_rows, put_light
 from autocolor.screens.picture.over_picture import camera_rows
 from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
-from autocolor.screens.screen import Cached, Handle, Screen
+from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.widgets.items import (

@@ -18,6 +18,7 @@ from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
+from autocolor.screens.cached import Cached
 from autocolor.screens.light_and_view.object_lines import ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
@@ -26,7 +27,6 @@ from autocolor.screens.light_and_view.orthographic_views import (
     ViewSide,
 )
 from autocolor.screens.picture.picture_edits import side_name
-from autocolor.screens.screen import Cached
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,

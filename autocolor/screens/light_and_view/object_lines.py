@@ -20,8 +20,8 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import View
+from autocolor.screens.cached import Cached
 from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, ViewSide
-from autocolor.screens.screen import Cached
 from autocolor.visibility.camera import NEAR, rotated
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.visible_points import POINT, VisiblePoints

@@ -10,8 +10,9 @@ import numpy as np
 from autocolor.arrays import Words
 from autocolor.explanation.explain import explain
 from autocolor.explanation.text import LABEL, TextRow, rows_of_text
+from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
-from autocolor.screens.screen import Cached, Screen
+from autocolor.screens.screen import Screen
 from autocolor.screens.session import EXPLAIN, Session
 from autocolor.widgets.items import (
     CHARACTER,

@@ -13,9 +13,11 @@ from typing import Final
 
 from autocolor.journal.description import describe_look
 from autocolor.scene.scene import Scene
+from autocolor.screens.cached import Cached
+from autocolor.screens.comparing import MOST_DESCRIBED
 from autocolor.screens.picture.over_picture import OverPicture
-from autocolor.screens.screen import Cached
-from autocolor.screens.session import HISTORY, MOST_DESCRIBED, Session
+from autocolor.screens.session import HISTORY, Session
+from autocolor.screens.steps import redo, undo
 from autocolor.widgets.items import CHARACTER, GRAY, Area, Item, fitted
 from autocolor.widgets.widget import MARGIN, ROW_LINES, Button, Gap, Pair, Widget
 
@@ -131,9 +133,9 @@ class HistoryScreen(OverPicture):
         """Undo or redo some steps at once. The list stays where it is."""
         self._first = self._shown.start
         if steps < 0:
-            self.session.undo(-steps)
+            undo(self.session, -steps)
         elif steps > 0:
-            self.session.redo(steps)
+            redo(self.session, steps)
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,19 @@ from autocolor.scene.defaults import TRIMMED
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import AUTO
 from autocolor.scene.surfaces import Paint
+from autocolor.screens.cached import Cached
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import ALL_HELD, PictureEdits
-from autocolor.screens.screen import Cached, Sample, Screen
-from autocolor.screens.session import Session
+from autocolor.screens.screen import Sample, Screen
+from autocolor.screens.session import EXPLAIN, Session
+from autocolor.screens.steps import end_comparing
+from autocolor.screens.surface.painting import change_paint, color_of
+from autocolor.studio import Studio
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Button, Choice, Pair, Switch, Widget
+from ramtek_emu import instructions
 
 
 class OverPicture(Screen):
@@ -75,11 +80,12 @@ class OverPicture(Screen):
     def pick(self, gesture: Gesture) -> None:
         session = self.session
         if session.comparing.is_on:
-            session.end_comparing()
+            end_comparing(session)
             return
         lines, elements = session.studio.words.shape
         if (gesture.shift or session.explains) and gesture.line < lines and gesture.element < elements:
-            session.explain(gesture.line, gesture.element)
+            session.explains, session.pixel = False, (gesture.line, gesture.element)
+            session.turn_to(EXPLAIN)
             return
         pointed = self._pointed(gesture.element, gesture.line)
         if pointed is None:
@@ -105,9 +111,10 @@ class OverPicture(Screen):
 
     def take_color(self, color: Color | str, element: int, line: int) -> None:
         name = self.session.surface_name
-        self.session.paint(
+        change_paint(
+            self.session,
             lambda paint: f"{name}: object color {in_digits(paint.object_color)}",
-            object_color=self.session.color_of(color),
+            object_color=color_of(self.session, color),
         )
 
     def _is_on_legend(self, element: int, line: int) -> bool:
@@ -143,8 +150,8 @@ class OverPicture(Screen):
         if line >= lines or element >= elements:
             # A display that is out of order may report any place, and any word there.
             return None
-        word = session.word_at(element, line)
-        name = session.surface_of(word)
+        word = word_at(session, element, line)
+        name = surface_of(session.studio, word)
         if not name or session.comparing.is_on or word != studio.words[line, element]:
             return None
         seen = studio.seen_at(line, element)
@@ -158,6 +165,19 @@ class OverPicture(Screen):
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"
         return Pointed(name, part, f"{scalar.name} {shown}, shade {(word - first) % bands.shades + 1}")
+
+
+def word_at(session: Session, element: int, line: int) -> int:
+    """The word of a pixel, read back from the display."""
+    ((read, count),) = instructions.read_image(element, line, 1, 1)
+    session.display.send(read)
+    return int(session.display.receive(count)[0])
+
+
+def surface_of(studio: Studio, word: int) -> str:
+    """The name of the surface that owns a word; empty for the background and the words of screens."""
+    ranges = studio.level_ranges.items()
+    return next((name for name, levels in ranges if levels.first <= word <= levels.last), "")
 
 
 class Pointed(NamedTuple):
@@ -194,7 +214,7 @@ def paint_rows(session: Session, paint: Paint) -> list[Widget]:
         return [switch]
 
     def put(changes: Mapping[str, Any]) -> None:
-        session.paint(**changes)
+        change_paint(session, **changes)
 
     rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
     # Shorten labels so that they fit beside their numbers.
@@ -209,13 +229,13 @@ looks nearly as before."""
 def _flip_ramp(session: Session, paint: Paint) -> None:
     """Give the chosen surface a ramp that looks like its paint, or two colors instead of its ramp."""
     if paint.ramp is not None:
-        session.paint(ramp=None)
+        change_paint(session, ramp=None)
         return
     image, name = session.studio.display_image, session.surface_name
     entries = entries_of(paint, image.ranges[name].levels, image.floor_of(name))
     steps = FIRST_RAMP_COLORS - 1
     levels = [half_up(step * (len(entries) - 1) / steps) for step in range(steps + 1)]
-    session.paint(ramp=entries[levels].tolist())
+    change_paint(session, ramp=entries[levels].tolist())
 
 
 HELD: Final = "held"

@@ -16,8 +16,9 @@ from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, stage_
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.screen import Cached
+from autocolor.screens.cached import Cached
 from autocolor.screens.session import Session
+from autocolor.screens.surface.painting import change_paint
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.widget import titled
 
@@ -364,7 +365,7 @@ class PictureEdits:
         if self.session.surface_name:
             blend = self.session.scene.surfaces[self.session.surface_name].paint.blend
             blend = min(1.0, max(0.0, round(blend + step, 6)))
-            self.session.paint(lambda paint: f"blend {paint.blend:.2f}", blend=blend)
+            change_paint(self.session, lambda paint: f"blend {paint.blend:.2f}", blend=blend)
 
     def repaint(self, step: int) -> None:
         """Give the selected surface another object color, `step` positions further.
@@ -380,4 +381,4 @@ class PictureEdits:
             names = dict(zip(map(in_digits, paints.colors), paints.names, strict=True))
         color = color_after(present, self._own_colors.setdefault(name, present), step, tuple(names))
         message = f"object color {', '.join(part for part in (names.get(color), color) if part)}"
-        self.session.paint(lambda _: message, object_color=color)
+        change_paint(self.session, lambda _: message, object_color=color)

@@ -8,8 +8,10 @@ from typing import Final
 
 from autocolor.errors import UsageError
 from autocolor.mapping.ranges import SCREENS
+from autocolor.screens.file_actions import ask_to_leave, lying, seeming_up, stand_up
+from autocolor.screens.light_parameters import all_lights_on, light_alone
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.over_picture import OverPicture, camera_rows, surface_row
+from autocolor.screens.picture.over_picture import OverPicture, camera_rows, surface_row, word_at
 from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, SENT, Session
@@ -48,7 +50,7 @@ class PictureScreen(OverPicture):
         self._handles.hold(handle)
 
     def place(self, handle: Handle, element: int, line: int) -> None:
-        if self.session.word_at(element, line) >= SCREENS.first:
+        if word_at(self.session, element, line) >= SCREENS.first:
             raise UsageError(
                 "a highlight must be placed on the picture, not on what covers it; choose another pixel"
             )
@@ -116,7 +118,9 @@ class PictureScreen(OverPicture):
                 run=partial(session.turn_to, SENT),
             ),
             Button(
-                "leave", "Leave the program; you are asked first about unsaved changes.", run=session.leave
+                "leave",
+                "Leave the program; you are asked first about unsaved changes.",
+                run=partial(ask_to_leave, session),
             ),
         ]
 
@@ -135,8 +139,10 @@ class PictureScreen(OverPicture):
     def _up_rows(self) -> list[Widget]:
         """The row of a mesh that seems to lie on its side."""
         session = self.session
-        help = f"The mesh seems to lie on its side: read it again with {session.hinted_up} up, or do nothing."
-        return [Button(session.lying, help, run=session.stand_up)] if session.lying else []
+        help = (
+            f"The mesh seems to lie on its side: read it again with {seeming_up(session)} up, or do nothing."
+        )
+        return [Button(lying(session), help, run=partial(stand_up, session))] if lying(session) else []
 
     def _light_rows(self) -> list[Widget]:
         session = self.session
@@ -157,9 +163,9 @@ class PictureScreen(OverPicture):
         alone = Pair(
             "alone",
             f"Switch on {titled('light', chosen)} alone, and again: the lights as before; or all lights.",
-            run=partial(session.light_alone, chosen),
+            run=partial(light_alone, session, chosen),
             other="all on",
-            run_other=session.all_lights_on,
+            run_other=partial(all_lights_on, session),
         )
         return [*switches, alone]
 

@@ -17,10 +17,11 @@ from autocolor.immutable import read_only
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.palette import in_palette
 from autocolor.mapping.ranges import BACKGROUND, SURFACE_WORDS, WORDS
+from autocolor.screens.cached import Cached
+from autocolor.screens.comparing import NOW
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import OverPicture
-from autocolor.screens.screen import Cached
-from autocolor.screens.session import NOW, SPLIT, Session
+from autocolor.screens.session import SPLIT, Session
 from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, Area, Item, filled, fitted, text
 from autocolor.widgets.widget import Widget
 

@@ -14,6 +14,7 @@ from typing import Final
 from autocolor.mapping.colors import blend_from, blend_level
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import OverPicture, paint_rows, surface_row
+from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.bars import LANE, LevelBar, PercentBar
 from autocolor.widgets.items import WIDTH, Area, Item
 from autocolor.widgets.menu import MENU
@@ -87,7 +88,7 @@ class BlendingScreen(OverPicture):
                 area=Area(between - BAR_ELEMENTS - LANE, TOP, between - 1, BOTTOM),
                 words=self.session.studio.display_image.words_at_levels(surface.name),
                 level=blend_level(paint.blend, levels),
-                put=lambda level: self.session.paint(blend=blend_from(level, levels)),
+                put=lambda level: change_paint(self.session, blend=blend_from(level, levels)),
                 number=f"{paint.blend:.2f}",
                 upright=True,
             ),
@@ -96,6 +97,6 @@ class BlendingScreen(OverPicture):
                 "The percentage of the light color at the highest level.",
                 area=Area(between, TOP, right - 1, BOTTOM),
                 value=paint.light_percentage,
-                put=lambda value: self.session.paint(light_percentage=value),
+                put=lambda value: change_paint(self.session, light_percentage=value),
             ),
         ]

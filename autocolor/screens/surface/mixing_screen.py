@@ -39,12 +39,14 @@ from autocolor.scene.changes import PaintChanges
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import MOST_RAMP_COLORS, Paint
 from autocolor.scene.swatches import mixed
+from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import FIRST_RAMP_COLORS, paint_rows, surface_row
-from autocolor.screens.screen import Cached, Sample, Screen
+from autocolor.screens.picture.over_picture import FIRST_RAMP_COLORS, paint_rows, surface_of, surface_row
+from autocolor.screens.screen import Sample, Screen
 from autocolor.screens.session import Session
 from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
 from autocolor.screens.surface.paint_choices import PaintChoices
+from autocolor.screens.surface.painting import change_paint, color_of, take_paint
 from autocolor.widgets.bars import ComponentBar, LevelBar, RampBar, level_strip
 from autocolor.widgets.items import (
     BLUE,
@@ -330,7 +332,7 @@ class MixingScreen(Screen):
         if pixel is None:
             return None
         word = int(studio.words[pixel])
-        name = self.session.surface_of(word)
+        name = surface_of(studio, word)
         red, green, blue = studio.entries[word].tolist()
         return Sample(name, (red, green, blue), word - studio.level_ranges[name].first if name else 0)
 
@@ -352,7 +354,7 @@ class MixingScreen(Screen):
         if sample is None or (self._taking == PAINT and not sample.surface):
             raise UsageError(f"no surface is there; {self._prompt(self._taking)}")
         if self._taking == PAINT:
-            self.session.take_paint(sample.surface)
+            take_paint(self.session, sample.surface)
         else:
             self._take(sample.color)
         self._taking = ""
@@ -394,12 +396,12 @@ class MixingScreen(Screen):
     def _add_color(self, ramp: Ramp) -> None:
         lower = self.object.number_in(ramp)
         color = mixed(ramp[lower], ramp[lower + 1], 0.5)
-        self.session.paint(ramp=(*ramp[: lower + 1], color, *ramp[lower + 1 :]))
+        change_paint(self.session, ramp=(*ramp[: lower + 1], color, *ramp[lower + 1 :]))
         self._choose_color(lower + 1)
 
     def _remove_color(self, ramp: Ramp) -> None:
         number = self._chosen.number_in(ramp)
-        self.session.paint(ramp=ramp[:number] + ramp[number + 1 :])
+        change_paint(self.session, ramp=ramp[:number] + ramp[number + 1 :])
         self._choose_color(min(number, len(ramp) - 2))
 
     def _choose_surface(self, name: str) -> None:
@@ -412,10 +414,10 @@ class MixingScreen(Screen):
         self._chosen = section
         surface = self.session.chosen_surface
         if surface is not None:
-            self.session.paint(**section.change(surface.paint, self.session.color_of(color)))
+            change_paint(self.session, **section.change(surface.paint, color_of(self.session, color)))
 
     def _put_level(self, level: int) -> None:
-        self.session.paint(blend=blend_from(level, self._levels.levels))
+        change_paint(self.session, blend=blend_from(level, self._levels.levels))
 
     def _take(self, color: Color | str, name: str = "") -> None:
         """Give the chosen color of the chosen surface a value, the color of a paint with a name."""

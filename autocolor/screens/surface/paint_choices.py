@@ -19,8 +19,9 @@ from autocolor.files.state import note_color, recent_colors
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.surfaces import Paint
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, swatches
-from autocolor.screens.screen import Cached
+from autocolor.screens.cached import Cached
 from autocolor.screens.session import Session
+from autocolor.screens.surface.painting import finish
 from autocolor.widgets.items import NIGHT, Area, Item, image
 from autocolor.widgets.widget import Button, Gap, Place, Widget, page_choice
 
@@ -155,7 +156,7 @@ class PaintChoices:
                 name,
                 f"Let the surface look like {name}, in its object color.",
                 area=area._replace(left=area.left + number * width, right=area.right + number * width),
-                run=partial(self.session.finish, name),
+                run=partial(finish, self.session, name),
             )
             for number, name in enumerate(FINISHES)
         ]

@@ -30,4 +30,4 @@ class ReflectanceScreen(OverPicture):
         ]
 
     def _put(self, name: str, changes: Mapping[str, Any]) -> None:
-        self.session.change_surface(name, **changes)
+        self.session.edit(self.session.scene.with_surface(name, **changes))

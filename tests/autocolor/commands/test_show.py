@@ -20,6 +20,7 @@ from autocolor.commands.show import BUTTONS, attend, folder_of, session_elsewher
 from autocolor.commands.tutorial import teach
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
+from autocolor.screens.file_actions import ask_to_leave
 from autocolor.screens.message_line import MessagePart, lines_of_message
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
@@ -135,7 +136,7 @@ def test_it_ends_when_it_is_left_and_the_picture_stays(
     def leave(viewer: Viewer) -> None:
         seen.append(viewer)
         first.extend(viewer.board.messages)
-        viewer.session.leave()
+        ask_to_leave(viewer.session)
 
     session_elsewhere(History(car()), server.address, tmp_path, None, leave)
     assert capsys.readouterr().err.startswith(f"shown on {server.address}; pick `leave` in the menu there")
@@ -195,7 +196,7 @@ def test_a_unix_socket_is_addressed_by_its_path(tmp_path: Path) -> None:
 
     def leave(viewer: Viewer) -> None:
         seen.append(viewer)
-        viewer.session.leave()
+        ask_to_leave(viewer.session)
 
     session_elsewhere(History(car()), served.address, tmp_path, None, leave)
     served.stop()

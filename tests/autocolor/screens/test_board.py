@@ -12,6 +12,7 @@ from autocolor.screens.board import REACH, handles_near
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import MESSAGE_SECONDS
+from autocolor.screens.surface.painting import change_paint
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.items import GRAY, ORANGE, SCREEN, SLATE, WHITE, WIDTH, Area, filled
 from autocolor.widgets.letters import PANEL as LETTER_PANEL
@@ -419,7 +420,7 @@ def test_entries_that_change_while_some_are_borrowed_are_there_afterwards(
         hand.viewer.tell("")
         assert hand.display.entries[:71, 0].tolist()[1:70] == [77] * 59 + [9] * 10
         assert np.array_equal(hand.display.entries[70:], hand.viewer.studio.entries[70:])
-        hand.viewer.session.paint(object_color="red")
+        change_paint(hand.viewer.session, object_color="red")
     hand.go_to("picture")
     assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
 

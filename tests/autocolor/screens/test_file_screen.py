@@ -24,6 +24,7 @@ from autocolor import (
 from autocolor.budget import allowing
 from autocolor.files.state import note_file, recent_files
 from autocolor.mapping.ranges import SCREENS
+from autocolor.screens.file_actions import open_file
 from autocolor.screens.file_screen import (
     FRAME,
     LEFT,
@@ -138,7 +139,7 @@ def test_a_mesh_that_lies_is_hinted_and_set_up_by_a_row_as_one_step(hand: Hand, 
     undo(hand)
     assert hand.scene is before
     # A mesh that is read with an axis is not hinted.
-    hand.viewer.session.place_meshes("y", 1.0)
+    hand.viewer.session.mesh_up = "y"
     hand.viewer.on_drop(folder / "spire.obj")
     assert told(hand) == ("opened spire.obj; undo goes back", False)
 
@@ -253,7 +254,7 @@ def test_the_up_axis_and_the_scale_of_a_mesh_are_chosen_before_it_is_opened(hand
     # What was up to y is up to z now: z has become -y.
     assert hand.scene.mesh.coordinates.tolist() == [[0, 0, 0], [100, 0, 0], [0, -100, 0]]
     # Other files give their own.
-    hand.viewer.session.open(folder / "wall")
+    open_file(hand.viewer.session, folder / "wall")
     assert hand.scene.name == "wall"
 
 

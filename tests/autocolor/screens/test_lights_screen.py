@@ -78,7 +78,9 @@ def test_clicks_set_a_parameter_alone(cut_hand: Hand, case: str) -> None:
 
 def test_every_parameter_of_a_light_has_a_row(hand: Hand) -> None:
     session = hand.viewer.session
-    session.change_light("key", half_spaces={"left": {"point": (0, 0, 0), "direction": (0, 0, 1)}})
+    session.edit(
+        session.scene.with_light("key", half_spaces={"left": {"point": (0, 0, 0), "direction": (0, 0, 1)}})
+    )
     labels = [row.label for row in hand.viewer.board.screen.rows()]
     # Long words are shortened.
     names = {key.replace("_", " ").replace("surfaces", "surfac") for key in keys_of(Light)} - {"direction"}

@@ -12,7 +12,10 @@ from autocolor.files.store.store_file import write_store
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.scene.lights import Links
-from autocolor.screens.session import BEFORE, LEAST_SECONDS, MESSAGE_SECONDS, NOW, SECONDS_BETWEEN
+from autocolor.screens.comparing import BEFORE, NOW
+from autocolor.screens.file_actions import SECONDS_BETWEEN, ask_to_leave, open_file, save
+from autocolor.screens.session import LEAST_SECONDS, MESSAGE_SECONDS
+from autocolor.screens.steps import undo
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.files.store.stores import run, small_scene
@@ -47,22 +50,22 @@ def test_leaving_first_names_the_changes_that_it_would_lose(tmp_path: Path) -> N
     session = hand_before(boxes(), tmp_path).viewer.session
 
     def asked() -> str:
-        session.leave()
+        ask_to_leave(session)
         assert not session.leaves
         return session.message.removesuffix(", or leave once more to discard the changes")
 
     session.edit(session.scene.replace(ambient=0.6))
     assert asked() == "not saved: save it"
     session.studio.keep_variant("dusk")
-    session.undo()
+    undo(session)
     assert asked() == "variant dusk is not saved: come back to it and save it"
     session.studio.show_variant("dusk")
-    session.save()
+    save(session)
     session.edit(session.scene.replace(ambient=0.8))
     write_scene(tmp_path / "other", boxes().replace(name="other"))
-    session.open(tmp_path / "other")
+    open_file(session, tmp_path / "other")
     assert asked().endswith(" is not saved: undo goes back to it")
-    session.leave()
+    ask_to_leave(session)
     assert session.leaves
 
 
@@ -487,7 +490,7 @@ def test_other_edits_do_not_say_that_nothing_changed(tmp_path: Path) -> None:
         viewer.tell("edited")
         viewer.on_tick()
         assert viewer.message == "edited"
-        viewer.session.undo()
+        undo(viewer.session)
         viewer.on_tick()
 
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from autocolor.errors import UsageError
 from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
 from autocolor.screens.board import rows_of_menu
+from autocolor.screens.cached import Cached
 from autocolor.screens.entries_screen import (
     CELL_HEIGHT,
     CELL_WIDTH,
@@ -25,7 +26,7 @@ from autocolor.screens.message_line import (
     lines_of_message,
     message_items,
 )
-from autocolor.screens.screen import Cached, Screen
+from autocolor.screens.screen import Screen
 from autocolor.screens.session import LastEdit
 from autocolor.screens.tutorial import Tutorial
 from autocolor.screens.viewer import Viewer, rows_of_help

@@ -14,7 +14,8 @@ from autocolor.journal.history import History
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.surfaces import Paint
 from autocolor.scene.swatches import swatches
-from autocolor.screens.session import NOW
+from autocolor.screens.comparing import NOW
+from autocolor.screens.surface.painting import change_paint
 from autocolor.screens.tutorial import END, LESSONS, Lesson, Tutorial, work_of
 from autocolor.screens.viewer import SCREENS, Viewer
 from autocolor.widgets.items import CHARACTER
@@ -223,10 +224,10 @@ def test_the_whole_tutorial_is_done_by_the_unit_alone(hand: Hand, tutorial: Tuto
     hand.pull("cone angle", 0.3, 0.6)
     assert name_of(tutorial) == "mix a color"
     # How colors are mixed and blended is the affair of those screens; what counts is the scene.
-    hand.viewer.session.paint(object_color="#204080")
+    change_paint(hand.viewer.session, object_color="#204080")
     hand.viewer.tell("")
     assert name_of(tutorial) == "blend"
-    hand.viewer.session.paint(blend=0.2)
+    change_paint(hand.viewer.session, blend=0.2)
     hand.viewer.tell("")
     assert name_of(tutorial) == "save"
     hand.pick("< picture")

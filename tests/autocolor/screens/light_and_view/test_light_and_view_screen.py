@@ -145,7 +145,7 @@ def test_a_place_that_the_scene_refuses_is_told_and_the_drag_goes_on() -> None:
     hand = opened(boxed(Light("key", (2.0, -3.0, 0.5), aim=(0.5, 0.5, 0.5))))
     # The aim is where the pixel of a place is, and the light is dragged there.
     aim = screen_of(hand).views.placed(TOP, (2.0, -3.0, 0.5), 60, 70)
-    hand.viewer.session.change_light("key", aim=aim)
+    hand.viewer.session.edit(hand.viewer.session.scene.with_light("key", aim=aim))
     hand.viewer.tell("")
     aimed = hand.scene
     hand.grab(*place_of(hand, MovablePoint(LIGHT, "top", "key")))
@@ -216,7 +216,7 @@ def test_rescale_moves_nearer_and_farther_and_fits_everything_with_space_on_all_
     hand.pick("rescale", 0.05)
     assert screen_of(hand).views.scale == pytest.approx(scale)
     far = (40.0, -30.0, 20.0)
-    hand.viewer.session.change_light("key", position=far)
+    hand.viewer.session.edit(hand.viewer.session.scene.with_light("key", position=far))
     hand.pick("fit all", 0.25)
     assert screen_of(hand).views.scale < scale / 3
     for side in SIDES:
@@ -353,7 +353,7 @@ def test_a_click_turns_to_the_mesh_whose_hidden_lines_are_left_out_when_there_is
     assert [screen.idle(), screen.idle()] == [True, False]
     assert grays(hand) < 0.9 * whole
     # A light changes nothing of that.
-    hand.viewer.session.change_light("key", position=(5.0, 0.0, 0.0))
+    hand.viewer.session.edit(hand.viewer.session.scene.with_light("key", position=(5.0, 0.0, 0.0)))
     assert not screen.idle()
     assert grays(hand) < 0.9 * whole
     hand.viewer.session.edit(hand.scene.with_view(angle=1.0))

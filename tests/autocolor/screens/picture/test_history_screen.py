@@ -18,7 +18,9 @@ def hand_after(steps: int, folder: Path) -> Hand:
     hand = Hand(Viewer(boxes(), Ramtek9300(), folder))
     for number in range(1, steps + 1):
         hand.viewer.session.same_step = False
-        hand.viewer.session.change_light("fill", intensity=round(0.5 + number / 100, 2))
+        hand.viewer.session.edit(
+            hand.viewer.session.scene.with_light("fill", intensity=round(0.5 + number / 100, 2))
+        )
     hand.open_menu()
     hand.pick(" ", 0.5)
     return hand

@@ -9,6 +9,7 @@ import pytest
 
 from autocolor import Light
 from autocolor.lighting.picking import cone_placed, highlight_placed, rims, specular_shares
+from autocolor.screens import steps
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.picture.light_handles import HandleKey
 from autocolor.widgets.bars import number_text
@@ -119,7 +120,7 @@ def test_a_highlight_is_refused_on_the_background_and_still_held(hand: Hand) -> 
     hand.drag(hand.handle("highlight of key"), MIDDLE, BACKGROUND)
     assert hand.viewer.studio.highlight_of("key") == MIDDLE[::-1]
     assert hand.viewer.session.news.is_warning
-    hand.viewer.session.undo()
+    steps.undo(hand.viewer.session)
     hand.grab(*hand.handle("highlight of key"))
     hand.move(*MIDDLE)
     assert hand.scene is not placed

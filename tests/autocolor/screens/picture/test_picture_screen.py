@@ -8,6 +8,7 @@ import pytest
 from autocolor import Scene, View
 from autocolor.screens.picture.picture_edits import moved, panned, seen_from, sides_of, turned
 from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
+from autocolor.screens.steps import undo
 from autocolor.widgets.widget import Choice, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
@@ -38,7 +39,7 @@ def test_every_side_is_in_the_list_of_the_row_of_the_view(hand: Hand) -> None:
         row = next(row for row in hand.viewer.board.layout.rows if row.label == "view")
         assert isinstance(row, Choice)
         assert row.present == side
-    hand.viewer.session.undo()
+    undo(hand.viewer.session)
     hand.viewer.tell("")
     row = hand.widget("view")
     assert isinstance(row, Choice)
@@ -121,7 +122,7 @@ def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
         hand.open_menu()
         hand.pick(label, share)
         views.append(hand.scene.view)
-        hand.viewer.session.undo()
+        undo(hand.viewer.session)
     # The ball is a surface of its own, and nearer than with the floor.
     assert views[1] == views[2] != views[0]
     middle, (x, y, z) = start.view.eye, views[2].eye

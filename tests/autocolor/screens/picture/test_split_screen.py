@@ -139,7 +139,7 @@ def test_a_variant_is_split_as_it_is_compared(tmp_path: Path) -> None:
     hand = hand_before(ball_scene(), tmp_path)
     hand.viewer.studio.keep_variant("A")
     for intensity in (0.5, 0.25):
-        hand.viewer.session.change_light("key", intensity=intensity)
+        hand.viewer.session.edit(hand.viewer.session.scene.with_light("key", intensity=intensity))
     hand.open_menu()
     hand.pick("variants")
     hand.pick("compare")

@@ -11,6 +11,7 @@ from autocolor.mapping.colors import Hsv, blend_level, color_of_hsv, hsv_of
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import swatches
 from autocolor.screens.session import Clipboard
+from autocolor.screens.steps import undo
 from autocolor.screens.surface.mixing_palette import Crop, crop_of
 from autocolor.screens.surface.mixing_screen import (
     BLEND,
@@ -19,6 +20,7 @@ from autocolor.screens.surface.mixing_screen import (
     PICTURE,
     MixingScreen,
 )
+from autocolor.screens.surface.painting import change_paint, take_paint
 from autocolor.widgets.bars import ComponentBar
 from autocolor.widgets.items import CHARACTER, NIGHT, Area, text
 from autocolor.widgets.menu import WORK
@@ -167,7 +169,7 @@ def ramp_of(hand: PaintingHand) -> tuple[Color, ...]:
 
 
 def give(hand: PaintingHand, ramp: list[str]) -> None:
-    hand.viewer.session.paint(ramp=ramp)
+    change_paint(hand.viewer.session, ramp=ramp)
     hand.move(300, 440)
 
 
@@ -192,7 +194,7 @@ def test_a_ramp_that_is_switched_on_looks_nearly_as_before_and_off_is_as_before(
     assert hand.message == "box 0: two colors and their blend replace its ramp"
     # An edit of the blend brings back the colors before the ramp; without them, colors of the ramp remain.
     give(hand, ["#000", "#f60"])
-    hand.viewer.session.paint(blend=0.5)
+    change_paint(hand.viewer.session, blend=0.5)
     assert hand.paint == before.replace(blend=0.5)
     bare = mixing(
         boxes_scene().with_surface("box 0", ramp=["#000", "#f60", "#0f0"]), hand.viewer.session.folder
@@ -247,7 +249,7 @@ def test_colors_are_added_between_two_and_removed_down_to_two(hand: PaintingHand
     # Undo may shorten the ramp below the chosen color.
     hand.pick(" ", 0.1)
     assert hand.paint == PAINTS[0]
-    hand.viewer.session.paint(ramp=[(number % 256, number // 4, 0) for number in range(1024)])
+    change_paint(hand.viewer.session, ramp=[(number % 256, number // 4, 0) for number in range(1024)])
     hand.move(300, 440)
     hand.pick("add color")
     assert hand.message == "add color: a ramp has at most 1,024 colors; remove a color first"
@@ -265,7 +267,7 @@ def test_the_bar_between_says_that_a_scalar_hides_the_paint(tmp_path: Path) -> N
 def test_a_finish_replaces_a_ramp_and_another_surface_takes_it(hand: PaintingHand) -> None:
     give(hand, ["#000", "#f60", "#fff"])
     hand.viewer.session.choose_surface("box 1")
-    hand.viewer.session.take_paint("box 0")
+    take_paint(hand.viewer.session, "box 0")
     assert hand.message == (
         "box 1: the paint of box 0; undo goes back; the ramp replaces its two colors and their blend"
     )
@@ -385,7 +387,7 @@ def test_a_scene_without_surfaces_in_use_says_so(tmp_path: Path) -> None:
 def test_a_color_that_passes_through_gray_or_black_keeps_its_hue(
     hand: PaintingHand, color: Color, bar: str
 ) -> None:
-    hand.viewer.session.paint(object_color=color)
+    change_paint(hand.viewer.session, object_color=color)
     line = line_of(hand, f"object, {bar}")
     hand.drag((ZERO + 200, line), (ZERO + 4, line), (ZERO, line))
     assert len(set(hand.paint.object_color)) == 1
@@ -545,7 +547,7 @@ def test_the_screens_of_paints_are_drawn_as_they_were(hand: PaintingHand) -> Non
     hand.pick("ramp", 0.95)
     hand.pick("ramp bar", 0.1)
     note("ramp")
-    hand.viewer.session.undo()
+    undo(hand.viewer.session)
     names = Palette(["#a52019", "#f8f32b"], ["Signal red", "Teal"])
     hand.viewer.session.paints, hand.viewer.session.paints_name = names, "paints.gpl"
     note("paints")

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from autocolor.files.state import recent_colors
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
 from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, MOST_RECENT, SwatchField
+from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Choice, Place
 from ramtek_emu import Ramtek9300
@@ -92,7 +94,7 @@ def choose_again(hand: PaintingHand) -> None:
 
 
 def test_the_new_colors_of_a_ramp_are_recent_colors(hand: PaintingHand) -> None:
-    paint = hand.viewer.session.paint
+    paint = partial(change_paint, hand.viewer.session)
     paint(ramp=["#100", "#200", "#300", "#400"])
     whole = [(number // 4, number % 4, 0) for number in range(1024)]
     for ramp, recent in (

@@ -1,0 +1,114 @@
+"""Another state of the scene, shown in place of the present state, to see what was gained.
+
+It is the state before the last step, or a scene that was chosen, such as a variant. An edit ends the
+comparison first. The words and entries of both states are at hand, so that switching sends only what differs:
+where only colors differ, no word.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+from autocolor.errors import UsageError
+from autocolor.journal.description import describe
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.scene.scene import Scene
+from autocolor.scene.view import View
+from autocolor.studio import Studio
+
+MOST_DESCRIBED: Final = 70
+"""Assumed: letters of the description of a difference, which leaves room in the message line for a verb."""
+
+BEFORE: Final = "the state before the last step"
+NOW: Final = "the present state"
+"""The names of the two states in the message line."""
+
+
+class NamedScene(NamedTuple):
+    """A scene to compare with, and its name in the message line."""
+
+    name: str
+    scene: Scene
+
+
+class Comparing:
+    """The state that the scene of a studio is compared with, and whether that state is shown."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._studio = studio
+        self._chosen: NamedScene | None = None
+        self._seen: tuple[Scene, View, NamedScene] | None = None
+        """A scene, the present view, and that scene in this view."""
+        self._cached: tuple[Scene, Scene, DisplayImage] | None = None
+        """The present scene, the scene that it was last compared with, and the image of that other scene."""
+        self._shown: DisplayImage | None = None
+
+    @property
+    def other(self) -> NamedScene | None:
+        """The chosen scene to compare with, else the look before the last step, if there is one.
+
+        It is in the present view if it has the present mesh.
+        """
+        steps, present = self._studio.history.to_undo, self._studio.scene
+        other = self._chosen or (NamedScene(BEFORE, steps[-1]) if steps else None)
+        if other is None or other.scene.mesh is not present.mesh or other.scene.view == present.view:
+            return other
+        if self._seen is None or self._seen[:2] != (other.scene, present.view):
+            seen = other._replace(scene=other.scene.replace(view=present.view))
+            self._seen = other.scene, present.view, seen
+        return self._seen[2]
+
+    def choose(self, other: NamedScene | None) -> None:
+        """Choose the scene to compare with from now on; None for the state before the last step."""
+        self.end()
+        self._chosen = other
+
+    def forget(self, scene: Scene) -> None:
+        """Compare with the state before the last step again if this scene was chosen."""
+        if self._chosen is not None and self._chosen.scene is scene:
+            self.choose(None)
+
+    @property
+    def difference(self) -> str:
+        """How the present state differs from the other state, for a message."""
+        difference = describe(self.other.scene, self._studio.scene, MOST_DESCRIBED) if self.other else ""
+        return f"now: {difference}" if difference else "now the same"
+
+    @property
+    def other_image(self) -> DisplayImage | None:
+        """The image of the state to compare with, if there is one; the present image is refined first."""
+        return None if self.other is None else self._image_of(self.other.scene)
+
+    @property
+    def image(self) -> DisplayImage | None:
+        """The image that is shown in place of the present state; None while comparing is off."""
+        return self._shown
+
+    @property
+    def is_on(self) -> bool:
+        """Whether another state is shown."""
+        return self._shown is not None
+
+    def begin(self) -> str:
+        """Show the other state; returns its name. Raises UsageError if there is none."""
+        other = self.other
+        if other is None:
+            raise UsageError(
+                "to compare, there must be a step to undo or a kept variant; edit something first"
+            )
+        if self._shown is None:
+            self._shown = self._image_of(other.scene)
+        return other.name
+
+    def end(self) -> bool:
+        """Show the present state again; returns False if it was shown."""
+        was_on, self._shown = self.is_on, None
+        return was_on
+
+    def _image_of(self, other: Scene) -> DisplayImage:
+        """The image of another scene, computed once for a pair of scenes."""
+        studio = self._studio
+        studio.refine()
+        if self._cached is None or self._cached[0] is not studio.scene or self._cached[1] is not other:
+            self._cached = studio.scene, other, studio.image_of(other)
+        return self._cached[2]
