@@ -17,7 +17,7 @@ import autocolor
 from autocolor import errors
 from autocolor.files.store.schema import DEFINITIONS, ROW_TABLES
 from autocolor.scene.columns import Row, fields_of, keys_of
-from autocolor.screens.viewer import BINDINGS, WINDOW_KEYS
+from autocolor.screens.keys import BINDINGS, WINDOW_KEYS
 from docs.generate import changes, columns, commands, fidelity, keys, store
 from docs.generate.notebook import CODE, MARKDOWN, NOTEBOOK, Cell, cells_of, notebook, outputs_of
 from ramtek_emu.inspection.inspector import help_rows

@@ -7,10 +7,8 @@ at its place. It knows screens by their interface alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, partial
-from operator import itemgetter
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -19,30 +17,24 @@ from autocolor.arrays import Bytes
 from autocolor.checks import Color
 from autocolor.scene.kinds import in_digits
 from autocolor.screens.input import MIDDLE, Gesture
+from autocolor.screens.layout import Layout, handles_near, opens
+from autocolor.screens.main_menu import last_rows, rows_of_menu
 from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items
 from autocolor.screens.screen import Handle, Sample, Screen
-from autocolor.screens.session import HISTORY, PICTURE, Session
-from autocolor.screens.steps import redo, switch_comparing, switch_split, undo
+from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
-    CHARACTER,
-    GRAY,
-    NIGHT,
     ORANGE,
-    SLATE,
     WHITE,
     WIDTH,
-    Area,
     Item,
     filled,
-    text,
 )
 from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.letters import letter_panel
 from autocolor.widgets.menu import (
     MENU,
-    WIDE_BAR,
     NameList,
     Section,
     folded,
@@ -53,17 +45,13 @@ from autocolor.widgets.menu import (
 )
 from autocolor.widgets.sheet import Page
 from autocolor.widgets.widget import (
-    MARGIN,
     NOWHERE,
-    TEXT_DOWN,
     Button,
     Choice,
     Entry,
     Gap,
     Heading,
-    Pair,
     Place,
-    Steps,
     Widget,
 )
 
@@ -72,117 +60,6 @@ HIDDEN: Final = "the panels are hidden: H shows them again, or the last row of t
 
 EDGE: Final = 4
 """Assumed: elements at the right edge of the screen that bring the menu."""
-
-REACH: Final = 8
-"""Assumed: elements or lines from a handle within which it is grabbed."""
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Everything that can be pointed at on a screen at one moment, computed on demand."""
-
-    screen: Screen
-    rows: Sequence[Widget] = ()
-    """The rows of the menu with their areas; none while the menu is away."""
-    over: Sequence[Widget] = ()
-    """The widgets over every screen, the topmost first."""
-    opened: str = ""
-    """The key of the row whose wide bar or list is open, if that row is on this page of the menu."""
-    list_names: Callable[[Choice], NameList] | None = None
-    """Gives the open list of a choice."""
-
-    @cached_property
-    def opened_row(self) -> Widget | None:
-        """The row whose wide bar or list is open."""
-        if not self.opened:
-            return None
-        return next((row for row in self.rows if row.key == self.opened and opens(row)), None)
-
-    @cached_property
-    def wide(self) -> Widget | None:
-        """The wide bar of a row, if it is shown."""
-        row = self.opened_row
-        return row.at(WIDE_BAR) if isinstance(row, Bar) else None
-
-    @cached_property
-    def listed(self) -> NameList | None:
-        """The list of a row, if it is shown."""
-        row = self.opened_row
-        return self.list_names(row) if isinstance(row, Choice) and self.list_names is not None else None
-
-    @cached_property
-    def beside(self) -> Sequence[Widget]:
-        """The widgets of the screen beside the menu."""
-        is_hidden = self.screen.shows_picture and not self.screen.has_panels
-        return () if is_hidden else self.screen.widgets()
-
-    @cached_property
-    def handles(self) -> Sequence[Handle]:
-        """The handles of the screen, including covered handles."""
-        return self.screen.handles()
-
-    @cached_property
-    def widgets(self) -> Sequence[Widget]:
-        """Everything that can be pointed at, the topmost first."""
-        wide = () if self.wide is None else (self.wide,)
-        listed = () if self.listed is None else self.listed.rows
-        return (*listed, *wide, *self.over, *self.rows, *self.beside)
-
-    @cached_property
-    def by_key(self) -> Mapping[str, Sequence[Widget]]:
-        """The widgets that have a key, the topmost first."""
-        by_key: dict[str, list[Widget]] = {}
-        for widget in self.widgets:
-            by_key.setdefault(widget.key, []).append(widget)
-        return by_key
-
-    def is_covered(self, element: int, line: int) -> bool:
-        """Whether the menu, its list or wide bar, or a panel over every screen covers a place."""
-        if self.rows and MENU.has(element, line):
-            return True
-        if self.wide is not None and WIDE_BAR.has(element, line):
-            return True
-        if self.listed is not None and self.listed.area.has(element, line):
-            return True
-        return any(widget.area.has(element, line) for widget in self.over)
-
-    def widget_at(self, element: int, line: int) -> Widget | None:
-        """The topmost widget at a place; headings and gaps are left out."""
-        for widget in self.widgets:
-            if widget.has(element, line) and not isinstance(widget, (Heading, Gap)):
-                return widget
-        return None
-
-    def lit(self, key: str, area: Area) -> Widget | None:
-        """The row or widget that has a key, preferably at this area. A wide bar lights its row."""
-        widgets = [widget for widget in self.by_key.get(key, ()) if widget is not self.wide]
-        return next((widget for widget in widgets if widget.area == area), widgets[0] if widgets else None)
-
-    def now(self, grabbed: Widget) -> Widget | None:
-        """A widget of an earlier layout as it is now, in its earlier area; None if it is gone."""
-        widgets = [each for each in self.by_key.get(grabbed.key, ()) if type(each) is type(grabbed)]
-        if not widgets:
-            return None
-        return next((each for each in widgets if each.area == grabbed.area), widgets[0]).at(grabbed.area)
-
-
-def opens(row: Widget) -> bool:
-    """Whether a row of a menu can open a wide bar or a list."""
-    return isinstance(row, Bar) or (isinstance(row, Choice) and row.has_list)
-
-
-def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Handle]:
-    """The handles within reach of a place, the nearest first; at equal distances, the last first.
-
-    A handle whose sign is at the place comes before all others.
-    """
-    near = []
-    for handle in handles:
-        is_at_sign = handle.sign.has(element, line)
-        distance = -1 if is_at_sign else max(abs(handle.element - element), abs(handle.line - line))
-        if distance <= REACH:
-            near.append((distance, handle))
-    return [handle for _, handle in sorted(reversed(near), key=itemgetter(0))]
 
 
 class Board:
@@ -717,92 +594,3 @@ def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:
     for first, colors in loads:
         table[first : first + len(colors)] = colors
     return table
-
-
-# The main menu: the rows that stand in every menu before and after the rows of its screen.
-
-
-STEPS: Final = "steps"
-"""The word between undo and redo that leads to the list of steps."""
-
-
-@dataclass(frozen=True)
-class UndoRow(Steps):
-    """Undo at the left, redo at the right, the list of steps between; a word is dim while it does nothing.
-
-    It takes picks alone, and no drags: every pick is a step.
-    """
-
-    signs: tuple[str, str] = ("undo", "redo")
-    can_undo: bool = True
-    can_redo: bool = True
-    show_history: Callable[[], object] = lambda: None
-
-    def items(self, lit: bool) -> list[Item]:
-        background = SLATE if lit else NIGHT
-        can = self.can_undo, self.can_undo or self.can_redo, self.can_redo
-        words = zip((self.signs[0], STEPS, self.signs[1]), self._places, can, strict=True)
-        top = self.area.top + TEXT_DOWN
-        texts = [text(word, left, top, WHITE if is_on else GRAY, background) for word, left, is_on in words]
-        return [filled(self.area, background), *texts]
-
-    @property
-    def _places(self) -> tuple[int, int, int]:
-        """Where the three words begin."""
-        left, _, right, _ = self.area
-        end = right + 1 - MARGIN - CHARACTER * len(self.signs[1])
-        start = left + MARGIN
-        return start, (start + CHARACTER * len(self.signs[0]) + end - CHARACTER * len(STEPS)) // 2, end
-
-    def pick(self, place: Place) -> object:
-        _, middle, end = self._places
-        if middle <= place.element < end:
-            return self.show_history()
-        return super().pick(place)
-
-    def drag(self, start: Place, last: Place, place: Place) -> object:
-        return None
-
-
-def rows_of_menu(session: Session, screen: Screen, screens: Iterable[Screen]) -> list[Widget]:
-    """The rows of a screen's menu: on the picture the ways to other screens, elsewhere the way back."""
-    if screen.name == PICTURE:
-        ways: list[Widget] = [
-            Button(each.title, each.help, run=partial(session.turn_to, each.name))
-            for each in screens
-            if each.is_in_menu and each is not screen
-        ]
-        return [*ways, Gap("ways"), *screen.rows()]
-    back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
-    return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows()]
-
-
-def last_rows(session: Session, screen: Screen) -> list[Widget]:
-    """The rows at the end of every page of every menu: undo, and over the picture comparing."""
-    history = session.studio.history
-    can_undo, can_redo = bool(history.to_undo), bool(history.to_redo)
-    row = UndoRow(
-        " ",
-        "Undo the last step, or redo it; between, the list of all steps.",
-        "" if can_undo or can_redo else "there is no step to undo",
-        step=lambda amount: undo(session) if amount < 0 else redo(session),
-        can_undo=can_undo,
-        can_redo=can_redo,
-        show_history=partial(session.turn_to, PICTURE if session.screen == HISTORY else HISTORY),
-    )
-    return [Gap("undo gap"), row, *([compare_row(session)] if screen.shows_picture else [])]
-
-
-def compare_row(session: Session) -> Widget:
-    """The row that shows the state to compare with, and the present one again, or both side by side."""
-    other = session.comparing.other
-    if other is None:
-        return Button("compare", why_not="there is no step to undo")
-    return Pair(
-        "compare",
-        f"Show {other.name}, and the present state again; or both, left and right of a line.",
-        run=partial(switch_comparing, session),
-        other="split",
-        run_other=partial(switch_split, session),
-        is_chosen=session.comparing.is_on,
-    )

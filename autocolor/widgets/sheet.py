@@ -61,10 +61,6 @@ class Sheet:
         self._whole = Area(0, 0, sizes.shown_elements - 1, sizes.shown_lines - 1)
         self._page: Page | None = None
 
-    def forget(self) -> None:
-        """Forget the page that is shown: the next page is drawn whole."""
-        self._page = None
-
     def show(self, page: Page) -> Sent:
         """Show a page; returns its words. Raises ReplyError or PortError if the display cannot be reached."""
         entries, base, others = self._changes(page)

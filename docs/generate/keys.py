@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from autocolor.screens.viewer import rows_of_help
+from autocolor.screens.keys import rows_of_help
 from ramtek_emu.inspection.inspector import help_rows
 from ramtek_emu.monitor.overlay import KEYS
 

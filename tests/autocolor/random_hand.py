@@ -5,7 +5,8 @@ from __future__ import annotations
 import random
 
 from autocolor.screens.input import Chord
-from autocolor.screens.viewer import BINDINGS, SCREENS, Viewer
+from autocolor.screens.keys import BINDINGS
+from autocolor.screens.viewer import SCREENS, Viewer
 from autocolor.widgets.widget import Gap, Heading
 from ramtek_emu import Ramtek9300
 

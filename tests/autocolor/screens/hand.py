@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from autocolor import Scene, Studio
-from autocolor.screens.board import rows_of_menu
+from autocolor.screens.main_menu import rows_of_menu
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.menu import Section, sections_of
 from autocolor.widgets.sheet import Sheet

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.screens.board import REACH, handles_near
+from autocolor.screens.layout import REACH, handles_near
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import MESSAGE_SECONDS

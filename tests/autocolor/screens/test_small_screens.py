@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from autocolor.errors import UsageError
 from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
-from autocolor.screens.board import rows_of_menu
 from autocolor.screens.cached import Cached
 from autocolor.screens.entries_screen import (
     CELL_HEIGHT,
@@ -20,6 +19,8 @@ from autocolor.screens.entries_screen import (
     named_cells,
 )
 from autocolor.screens.help_screen import LEFT, MIDDLE, ROWS_A_PAGE, STEP, TITLE, TOP, help_items
+from autocolor.screens.keys import rows_of_help
+from autocolor.screens.main_menu import rows_of_menu
 from autocolor.screens.message_line import (
     MESSAGE,
     MessagePart,
@@ -29,7 +30,7 @@ from autocolor.screens.message_line import (
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import LastEdit
 from autocolor.screens.tutorial import Tutorial
-from autocolor.screens.viewer import Viewer, rows_of_help
+from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import BLACK, CHARACTER, ORANGE, SCREEN, WHITE, WIDTH, YELLOW, Area, filled, text
 from autocolor.widgets.menu import MENU, MESSAGE_CHARACTERS, WIDE_BAR, laid_out

@@ -11,9 +11,10 @@ import pytest
 from autocolor import InputError, Mesh, Scene, Surface, View
 from autocolor.arrays import Words
 from autocolor.scene.defaults import framed
+from autocolor.screens.keys import BINDINGS, WINDOW_KEYS
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import MESSAGE_SECONDS
-from autocolor.screens.viewer import BINDINGS, SCREENS, WINDOW_KEYS, Viewer
+from autocolor.screens.viewer import SCREENS, Viewer
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import MESSAGE_CHARACTERS
 from autocolor.widgets.widget import Button

@@ -125,19 +125,6 @@ def test_a_page_writes_what_differs_alone() -> None:
     assert np.array_equal(display.entries, TABLES[1])
 
 
-def test_a_sheet_that_forgets_draws_over_whatever_is_there() -> None:
-    display = Ramtek9300()
-    sheet = Sheet(display)
-    sheet.show(page(*ROWS))
-    other = Sheet(display)
-    other.show(page(text("other", 5, 5), base=8))
-    sheet.forget()
-    sheet.show(page(*ROWS))
-    fresh = Ramtek9300()
-    Sheet(fresh).show(page(*ROWS))
-    assert np.array_equal(display.words, fresh.words)
-
-
 def test_a_page_that_could_not_be_sent_is_drawn_whole_the_next_time() -> None:
     class Broken(Ramtek9300):
         fails = False

@@ -10,6 +10,7 @@ import pytest
 from autocolor import Paint, Scene, View
 from autocolor.mapping.legend import legend
 from autocolor.screens.input import turn_between, wheel_ratio
+from autocolor.screens.keys import show_other
 from autocolor.screens.picture.over_picture import legend_items
 from autocolor.screens.picture.picture_edits import moved, panned, turned
 from autocolor.screens.session import Clipboard
@@ -66,7 +67,7 @@ def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
     assert hand.message == "the legend: drag it"
     session.edit(session.scene.replace(scalar=None))
     before = session.scene
-    hand.viewer.compare()
+    show_other(hand.viewer)
     hand.move(600, 100)
     assert hand.viewer.board.screen.hint(600, 100) == hand.viewer.board.screen.help
     hand.drag((600, 100), (500, 150))

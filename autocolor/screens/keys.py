@@ -1,0 +1,265 @@
+"""The keys of the interactive system: the bindings, and what they do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from autocolor.errors import UsageError
+from autocolor.screens.file_actions import read_again, save, save_image
+from autocolor.screens.input import Binding, Chord
+from autocolor.screens.picture.picture_edits import sides_of
+from autocolor.screens.session import PICTURE, SENT
+from autocolor.screens.steps import compare, end_comparing, redo, undo
+from autocolor.screens.surface.painting import take_paint
+
+if TYPE_CHECKING:
+    from autocolor.screens.viewer import Viewer
+
+
+def toggle(viewer: Viewer, screen: str) -> None:
+    """Turn to a screen, or back to the picture if it is shown."""
+    viewer.session.turn_to(PICTURE if viewer.session.screen == screen else screen)
+
+
+def show_other(viewer: Viewer) -> None:
+    """Show the state to compare with, over the picture."""
+    if not viewer.board.screen.shows_picture:
+        viewer.session.turn_to(PICTURE)
+    compare(viewer.session)
+
+
+def undo_step(viewer: Viewer) -> None:
+    """Undo the last step."""
+    viewer.show_scene()
+    undo(viewer.session)
+
+
+def redo_step(viewer: Viewer) -> None:
+    """Redo the last undone step."""
+    viewer.show_scene()
+    redo(viewer.session)
+
+
+def reopen(viewer: Viewer) -> None:
+    """Read the scene's file again, as one step to undo."""
+    viewer.show_scene()
+    read_again(viewer.session)
+
+
+def take_sample(viewer: Viewer, is_color: bool) -> None:
+    """Take the paint of the surface under the pointer, or the color that is seen there.
+
+    Raises UsageError if there is none.
+    """
+    sample = viewer.board.sample
+    if sample is None or not sample.surface:
+        raise UsageError("no surface is under the pointer; point at it in the picture")
+    if is_color:
+        viewer.board.take_color(sample.color)
+    else:
+        take_paint(viewer.session, sample.surface)
+
+
+def copy(viewer: Viewer) -> None:
+    """Copy the color or the text under the pointer to the clipboard; UsageError if there is none."""
+    text, clipboard = viewer.board.text_to_copy, viewer.session.clipboard
+    if not text:
+        raise UsageError("nothing is there to copy; point at a color")
+    if clipboard is None or not clipboard.copy(text):
+        raise UsageError(f"{text} is not copied, because this display has no clipboard; write it down")
+    viewer.session.tell(f"copied {text}")
+
+
+def paste(viewer: Viewer) -> None:
+    """Paste the first line of the clipboard's text, without letters that cannot be typed.
+
+    Raises UsageError without a clipboard or a text.
+    """
+    clipboard = viewer.session.clipboard
+    if clipboard is None:
+        raise UsageError("this display has no clipboard; type the color")
+    line = clipboard.paste().split("\n")[0]
+    # Some systems end the text by a character 0.
+    text = "".join(letter for letter in line if letter.isprintable()).strip()
+    if not text:
+        raise UsageError("the clipboard has no text; copy a color first")
+    viewer.board.paste(text)
+
+
+TURN: Final = 5.0
+FINE_TURN: Final = 1.0
+"""Degrees for each press of a key that turns, and with Shift."""
+
+CLOSER: Final = 0.9
+"""The ratio of distances for each press of a key that moves closer."""
+
+BLEND: Final = 0.05
+"""The step of the blend for each press of its keys."""
+
+BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
+    Binding((Chord("f1"),), "this help, and back", lambda viewer, _: toggle(viewer, "help")),
+    Binding(
+        (Chord("f2"),),
+        "the instructions that the last edit sent, and back",
+        lambda viewer, _: toggle(viewer, SENT),
+    ),
+    Binding(
+        (Chord("f4"),),
+        "the 1024 entries of the lookup table, and back",
+        lambda viewer, _: toggle(viewer, "entries"),
+    ),
+    Binding(
+        (Chord("tab"),),
+        "the menu (or the right edge); its keys: arrows, Return",
+        lambda viewer, _: viewer.board.toggle_menu(),
+    ),
+    Binding(
+        (Chord("h"),),
+        "hide the menu and all panels, and bring them back",
+        lambda viewer, _: viewer.board.switch_panels(),
+    ),
+    Binding(
+        (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
+        "turn around the object; finely with Shift",
+        lambda viewer, number: viewer.edits.turn((-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
+        label="Left, Right",
+        held=True,
+    ),
+    Binding(
+        (Chord("up"), Chord("down"), Chord("up", shift=True), Chord("down", shift=True)),
+        "look from above, from below; finely with Shift",
+        lambda viewer, number: viewer.edits.turn(0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
+        label="Up, Down",
+        held=True,
+    ),
+    Binding(
+        (Chord("+"), Chord("="), Chord("-")),
+        "move closer, farther",
+        lambda viewer, number: viewer.edits.move((CLOSER, CLOSER, 1 / CLOSER)[number]),
+        label="+ and -",
+        held=True,
+    ),
+    Binding(
+        (Chord(","), Chord(".")),
+        "rotate the picture's horizontal axis",
+        lambda viewer, number: viewer.edits.tilt((-TURN, TURN)[number]),
+        label="comma, period",
+        held=True,
+    ),
+    Binding(
+        (*(Chord(f"f{number}") for number in range(5, 10)), Chord("f6", shift=True)),
+        "view from front, left (Shift: right), back, top, corner",
+        lambda viewer, number: viewer.edits.see_from(tuple(sides_of(viewer.session.scene))[number]),
+        label="F5 to F9",
+    ),
+    Binding(
+        (Chord("r"), Chord("r", shift=True)),
+        "rescale: fill the picture with the object, the surface",
+        lambda viewer, number: viewer.edits.rescale(number == 1),
+    ),
+    Binding(
+        (Chord("home"),),
+        "the view as opened",
+        lambda viewer, _: viewer.edits.as_opened(),
+        label="Home",
+    ),
+    Binding(
+        tuple(Chord(str(digit)) for digit in range(1, 10)),
+        "switch a light on or off",
+        lambda viewer, number: viewer.edits.switch_light(number),
+        label="1 to 9",
+    ),
+    Binding(
+        (Chord("s"), Chord("s", shift=True)),
+        "select the next surface, the previous one",
+        lambda viewer, number: viewer.edits.choose_surface((1, -1)[number]),
+        repeats=True,
+    ),
+    Binding(
+        (Chord("["), Chord("]")),
+        "blend: light color from a lower, from a higher level",
+        lambda viewer, number: viewer.edits.blend((-BLEND, BLEND)[number]),
+        label="[ and ]",
+        held=True,
+    ),
+    Binding(
+        (Chord("c"), Chord("c", shift=True)),
+        "the next object color, the previous one",
+        lambda viewer, number: viewer.edits.repaint((1, -1)[number]),
+        repeats=True,
+    ),
+    Binding(
+        (Chord("p"), Chord("p", shift=True)),
+        "take the paint, the color that is under the pointer",
+        lambda viewer, number: take_sample(viewer, number == 1),
+    ),
+    Binding(
+        (Chord("c", control=True),),
+        "copy the color under the pointer",
+        lambda viewer, _: copy(viewer),
+    ),
+    Binding((Chord("v", control=True),), "paste a color", lambda viewer, _: paste(viewer)),
+    Binding(
+        (Chord("e"),),
+        "hold the exposure (less light is darker), release it",
+        lambda viewer, _: viewer.edits.switch_exposure(),
+    ),
+    Binding(
+        (Chord("w"),),
+        "watch the picture being computed, line by line",
+        lambda viewer, _: viewer.watch(),
+    ),
+    Binding(
+        (Chord("b"),),
+        "while held: the state before the last step",
+        lambda viewer, _: show_other(viewer),
+        release=lambda viewer: end_comparing(viewer.session),
+    ),
+    Binding(
+        (Chord("left", alt=True), Chord("right", alt=True)),
+        "the view before, and forward again",
+        lambda viewer, number: viewer.edits.view_again(number == 0),
+        repeats=True,
+    ),
+    Binding((Chord("z", control=True),), "undo", lambda viewer, _: undo_step(viewer), repeats=True),
+    Binding(
+        (Chord("y", control=True), Chord("z", control=True, shift=True)),
+        "redo",
+        lambda viewer, _: redo_step(viewer),
+        repeats=True,
+    ),
+    Binding(
+        (Chord("s", control=True),),
+        "save the picture with its scene",
+        lambda viewer, _: save(viewer.session),
+    ),
+    Binding((Chord("f12"),), "save a numbered screenshot", lambda viewer, _: viewer.save_screen()),
+    Binding(
+        (Chord("f12", shift=True),),
+        "save the picture alone under the next number",
+        lambda viewer, _: save_image(viewer.session),
+    ),
+    Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: reopen(viewer)),
+    Binding(
+        (Chord("escape"),),
+        "take a drag back; leave full screen, a list, a page",
+        lambda viewer, _: viewer.escape(),
+    ),
+)
+WINDOW_KEYS: Final = (
+    ("F3", "record the window as a film; again: end it"),
+    ("F10", "fill the window, or show whole multiples"),
+    ("F11, Alt+Enter", "full screen, and back"),
+    ("Ctrl+Q", "leave; you are asked first about unsaved changes"),
+    ("mouse", "drag: turn; Shift, middle: move; Ctrl, wheel: closer"),
+    ("mouse, Shift+click", "explain the pixel: every number that leads to its color"),
+    ("mouse, highlight", "drag it, or click, and click where it goes"),
+    ("joystick unit", "ENTER (left button): pick, place; TRACK (right), held: drag"),
+    ("a file dropped", "open it: a scene, a mesh, a picture file, or paints"),
+)
+"""The keys that the window itself handles, and the mouse."""
+
+
+def rows_of_help() -> list[tuple[str, str]]:
+    """Each key and what it does, for the help page."""
+    return [(str(binding), binding.does) for binding in BINDINGS] + list(WINDOW_KEYS)
