@@ -151,6 +151,8 @@ class Viewer:
         self._drags = 0
         """How many drags and picks there were."""
         self._had_news = True
+        self._compared_from = PICTURE
+        """The screen to return to when comparing ends."""
         self._base: Words | int | None = None
         """The base of the page that was shown last."""
         self._words: Words | None = None
@@ -207,9 +209,7 @@ class Viewer:
         self._update()
         return taken
 
-    def _press(
-        self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool
-    ) -> bool:
+    def _press(self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool) -> bool:
         """Offer a key to the typed text, the menu, the screen and the key bindings, in this order."""
         if not control and not alt and self._type(name, typed, repeated):
             return True
@@ -421,10 +421,19 @@ class Viewer:
         self._watching.begin(self.studio)
 
     def compare(self) -> None:
-        """Show the state to compare with, over the picture."""
+        """Show the look to compare with, over the picture."""
+        self._compared_from = PICTURE
         if not self.board.screen.shows_picture:
+            self._compared_from = self.session.screen
             self.session.turn_to(PICTURE)
         self.session.compare()
+
+    def end_comparing(self) -> None:
+        """Show the present look again, on the screen from which the other look was asked for."""
+        self.session.end_comparing()
+        if self.session.screen == PICTURE:
+            self.session.turn_to(self._compared_from)
+        self._compared_from = PICTURE
 
     def escape(self) -> bool:
         """Take a drag back, close what is open, or return to the picture.
@@ -671,9 +680,9 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     ),
     Binding(
         (Chord("b"),),
-        "while held: the state before the last step",
+        "while held: the look before the last step",
         lambda viewer, _: viewer.compare(),
-        release=lambda viewer: viewer.session.end_comparing(),
+        release=lambda viewer: viewer.end_comparing(),
     ),
     Binding(
         (Chord("left", alt=True), Chord("right", alt=True)),
