@@ -38,7 +38,7 @@ from autocolor.errors import AutocolorError, UsageError, warn_of_edit
 from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image, save_image
-from autocolor.journal.history import Edit, History, is_picture
+from autocolor.journal.history import History, Move, Show, is_picture
 from autocolor.journal.places import NO_STAMP, Source, opened
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
@@ -62,6 +62,7 @@ if TYPE_CHECKING:
 
     from autocolor.journal.history import Variants
     from autocolor.journal.saving import SavedFiles
+    from autocolor.journal.timeline import Timeline, Way
     from autocolor.scene.changes import SceneChanges
     from autocolor.scene.creation import SurfaceSource
 
@@ -317,45 +318,25 @@ class Studio(Suggesting):
 
         The present view stays. Edits of the view alone are no steps: see `view_back`.
         """
-        history = self._history
-        if not 1 <= steps <= len(history.to_undo):
-            return False
-        after = history.timeline.undone(steps)
-        self._show_scene(after.present.scene, lambda: history.undo(steps, after))
-        return True
+        return self._move("undo", steps)
 
     def redo(self, steps: int = 1) -> bool:
         """Redo the next undone step, or some steps at once; returns False if there are not so many."""
-        history = self._history
-        if not 1 <= steps <= len(history.to_redo):
-            return False
-        after = history.timeline.redone(steps)
-        self._show_scene(after.present.scene, lambda: history.redo(steps, after))
-        return True
+        return self._move("redo", steps)
 
     def view_back(self) -> bool:
         """Return to the view before; returns False if there is none since the scene was opened."""
-        timeline = self._history.timeline
-        if timeline.views_back:
-            after = timeline.turned_back()
-            self._show_scene(after.present.scene, lambda: self._history.turn(after))
-        return bool(timeline.views_back)
+        return self._move("view_back")
 
     def view_forward(self) -> bool:
         """Return to the view that `view_back` left; returns False if there is none."""
-        timeline = self._history.timeline
-        if timeline.views_forward:
-            after = timeline.turned_forward()
-            self._show_scene(after.present.scene, lambda: self._history.turn(after))
-        return bool(timeline.views_forward)
+        return self._move("view_forward")
 
     def take_back(self) -> None:
-        """Take the last gesture back, of a look or of the view, as if it had not been made."""
-        steps = self._history.steps
-        if steps and isinstance(steps[-1], Edit) and not steps[-1].changes_look:
-            self.view_back()
-        else:
-            self.undo()
+        """Take the last edit and its gesture back, as if they had not been made."""
+        before = self._history.before_gesture
+        if before is not None:
+            self.edit(before.present.scene, same_step=True)
 
     @property
     def is_changed(self) -> bool:
@@ -387,7 +368,7 @@ class Studio(Suggesting):
         """
         after = self._history.shown(name)
         if not after.present.scene.equals(self.scene):
-            self._show_scene(after.present.scene, lambda: self._history.show(name, after))
+            self._go(after, Show(name))
 
     def drop_variant(self, name: str) -> None:
         """Drop a variant. Raises UsageError for an unknown name."""
@@ -575,6 +556,19 @@ class Studio(Suggesting):
         ends a widget. Raises UnavailableError without the package anywidget (extra `notebook`).
         """
         return self._port.new_widget()
+
+    def _move(self, way: Way, steps: int = 1) -> bool:
+        """Move some steps on a way of the timeline; returns False if there are not so many."""
+        try:
+            after = self._history.timeline.moved(way, steps)
+        except IndexError:
+            return False
+        self._go(after, Move(way, steps))
+        return True
+
+    def _go(self, after: Timeline, step: Show | Move) -> None:
+        """Show the scene of the timeline that a step leads to, and take the step."""
+        self._show_scene(after.present.scene, lambda: self._history.go(after, step))
 
     def _show_scene(
         self, scene: Scene, note: Callable[[], object], costs: Tier | None = None, moving: bool = False

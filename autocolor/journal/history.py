@@ -15,7 +15,7 @@ from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.files.paths import PICTURE_SUFFIX
 from autocolor.journal.places import NO_STAMP, FilesOnDisk, OnDisk, Opened, ScenePlace, Source
-from autocolor.journal.timeline import Timeline, have_one_look
+from autocolor.journal.timeline import Timeline, Way, have_one_look
 from autocolor.mapping.intensity import is_held
 from autocolor.scene.scene import AUTO, Exposure, Scene
 
@@ -77,19 +77,14 @@ class Saved(NamedTuple):
     is_own: bool = True
 
 
-class Undo(NamedTuple):
-    """Some steps were undone at once."""
+class Move(NamedTuple):
+    """Some steps were undone or redone at once, or a view was returned to."""
 
+    way: Way
     steps: int = 1
 
 
-class Redo(NamedTuple):
-    """Some steps were redone at once."""
-
-    steps: int = 1
-
-
-Step = Edit | Open | Show | Keep | Drop | Saved | Undo | Redo
+Step = Edit | Open | Show | Keep | Drop | Saved | Move
 
 
 class History:
@@ -104,6 +99,8 @@ class History:
         self.steps: list[Step] = []
         self.variants = Variants()
         self.timeline = Timeline(Opened(start, self.first_place))
+        self.before_gesture: Timeline | None = None
+        """The timeline before the last edit, or before the gesture of this edit; None after another step."""
         self._branches: set[str] = set()
         """The names of the variants that are ends of undone steps, after which another step was taken."""
         self._saved: dict[ScenePlace, Saved] = {}
@@ -158,7 +155,7 @@ class History:
 
     @property
     def unsaved_variants(self) -> tuple[str, ...]:
-        """The names of variants that no file of the session holds, and that were not opened as they are.
+        """The names of variants whose look no file of the session holds, and that were not opened so.
 
         Undone steps that became a variant because another step was taken do not count.
         """
@@ -167,12 +164,12 @@ class History:
         return tuple(
             name
             for name, variant in self.variants.items()
-            if name not in self._branches and not any(scene.equals(variant.scene) for scene in scenes)
+            if name not in self._branches and not any(have_one_look(scene, variant.scene) for scene in scenes)
         )
 
     @property
     def to_undo(self) -> tuple[Scene, ...]:
-        """The scene before each step that can be undone, the last step last, in the view of its time."""
+        """The scenes before each step to undo, each in the view of its time; the last step is the last."""
         return tuple(each.scene for each in self.timeline.to_undo)
 
     @property
@@ -204,37 +201,41 @@ class History:
 
     @property
     def to_redo(self) -> tuple[Scene, ...]:
-        """The scenes after each step that can be redone, the next step last, each in the view of its time."""
+        """The scenes after each step to redo, each in the view of its time; the next step is the last."""
         return tuple(each.scene for each in self.timeline.to_redo)
 
     def take(self, scene: Scene, same_step: bool = False) -> None:
         """Make a scene the current one; with `same_step`, the edit belongs to the gesture of the last edit.
 
-        All edits of a gesture are one step to undo, and one view to go back from.
+        All edits of a gesture are one step to undo, and one view to go back from. A gesture that came back to
+        its beginning is none.
         """
-        gesture = self._last_gesture() if same_step else []
-        self._note(Edit(self.scene, scene, bool(gesture)))
-        joins_look = any(edit.changes_look for edit in gesture)
-        joins_turn = any(edit.changes_view for edit in gesture)
-        self._go(self.timeline.edited(scene, joins_look, joins_turn))
+        before = self.before_gesture if same_step else None
+        self._note(Edit(self.scene, scene, joins=before is not None))
+        self.before_gesture = before or self.timeline
+        self._go(self.before_gesture.edited(scene))
 
     def open(self, opened: Opened, source: Source) -> None:
         """Make a scene the current one that was opened from a source."""
         self._note_opened(opened)
-        self._go(self.timeline.moved_to(opened))
-        self.steps.append(Open(opened.scene, source))
+        self.go(self.timeline.moved_to(opened), Open(opened.scene, source))
 
     def shown(self, name: str) -> Timeline:
-        """The timeline that `show` leads to. Raises UsageError for an unknown name."""
-        return self.timeline.moved_to(self.variants[name], keeps_view=True)
-
-    def show(self, name: str, after: Timeline | None = None) -> None:
-        """Make a variant the current scene, with its place, in the present view if it has the same place.
+        """The timeline with a variant, in the present view if it has the present place, as the current scene.
 
         Raises UsageError for an unknown name.
         """
-        self._go(after or self.shown(name))
-        self.steps.append(Show(name))
+        return self.timeline.moved_to(self.variants[name], keeps_view=True)
+
+    def move(self, way: Way, steps: int = 1) -> None:
+        """Move some steps on a way. Raises IndexError if there are not so many."""
+        self.go(self.timeline.moved(way, steps), Move(way, steps))
+
+    def go(self, after: Timeline, step: Open | Show | Move) -> None:
+        """Go to the timeline that a step leads to, such as `shown("A")` by Show("A")."""
+        self.before_gesture = None
+        self._go(after)
+        self.steps.append(step)
 
     def keep(self, name: str) -> None:
         """Make the current scene a variant. Raises UsageError for a name that is in use or not valid."""
@@ -261,16 +262,6 @@ class History:
         self._saved[self.place] = saved
         self.steps.append(saved)
 
-    def undo(self, steps: int = 1, after: Timeline | None = None) -> None:
-        """Return to the look before some steps. Raises IndexError if there are not so many."""
-        self._go(after or self.timeline.undone(steps))
-        self.steps.append(Undo(steps))
-
-    def redo(self, steps: int = 1, after: Timeline | None = None) -> None:
-        """Return to the look after some undone steps. Raises IndexError if there are not so many."""
-        self._go(after or self.timeline.redone(steps))
-        self.steps.append(Redo(steps))
-
     def _note_opened(self, opened: Opened) -> None:
         """Note the scene of a place that was opened, and its file."""
         place = opened.place
@@ -294,38 +285,24 @@ class History:
             return self._saved[opened.place].scene.equals(opened.scene)
         return not file.is_outdated and file.scene.equals(opened.scene)
 
-    def turn(self, after: Timeline) -> None:
-        """Go to a timeline of another view, such as `timeline.turned_back()`."""
-        self._note(Edit(self.scene, after.present.scene))
-        self._go(after)
-
     def _go(self, after: Timeline) -> None:
         """Go to a timeline. If it forgets steps that were undone at once, their end becomes a variant."""
         before, self.timeline = self.timeline, after
-        forgets = before.has_jumped and before.to_redo and not after.has_jumped
-        if forgets and len(self.variants) < MOST_VARIANTS:
-            name = self.variants.free_name()
-            self.variants = self.variants.with_variant(name, before.to_redo[0])
-            self._branches.add(name)
-
-    def _last_gesture(self) -> list[Edit]:
-        """The edits of the last gesture, the last one first; none if an undo or another scene came after."""
-        gesture = []
-        for step in reversed(self.steps):
-            if isinstance(step, Edit):
-                gesture.append(step)
-                if not step.joins:
-                    break
-            elif not isinstance(step, (Keep, Drop, Saved)):
-                break
-        return gesture
+        if before.has_jumped and not after.has_jumped:
+            # A gesture that came back and goes on forgets the same steps again.
+            end = next(iter(before.to_redo), None)
+            is_kept = any(end is variant for variant in self.variants.values())
+            if end is not None and not is_kept and len(self.variants) < MOST_VARIANTS:
+                name = self.variants.free_name()
+                self.variants = self.variants.with_variant(name, end)
+                self._branches.add(name)
 
     def _note(self, edit: Edit) -> None:
         """Note an edit among the steps; an edit that joins an edit extends it, so that a drag is one edit."""
         last = self.steps[-1] if self.steps else None
         if edit.joins and isinstance(last, Edit):
             drag = Edit(last.before, edit.after, last.joins)
-            # A drag that returns to its beginning is still a step to undo, so its way back is another edit.
+            # Where an edit changes back what the last one changed, both are noted.
             kinds = [(each.changes_look, each.changes_view) for each in (last, edit, drag)]
             if kinds[0] == kinds[1] == kinds[2]:
                 self.steps[-1] = drag

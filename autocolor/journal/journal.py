@@ -8,11 +8,12 @@
     {"step": "saved", "files": {"/home/ann/car/scene.toml": "77d0...", "/home/ann/car.npz": "c1e9..."}}
     {"step": "undo", "steps": 1}
 
-The other steps are `show` and `drop`, with the name of a variant, `redo`, and `on_disk`, which is
-like `saved` for files that get a backup before they are overwritten. An edit is the call of a method of the
-scene; its columns have the plain values of scene files. `mesh` is null if the mesh stays, empty for the mesh
-of the first scene, else the name of a folder beside the journal that has the mesh in a scene. The line of an
-opened scene has all its tables, so that only the mesh must still be in the files.
+The other steps are `show` and `drop`, with the name of a variant; `redo`, `view_back` and `view_forward`,
+with a number of steps; and `on_disk`, which is like `saved` for files that get a backup before they are
+overwritten. An edit is the call of a method of the scene; its columns have the plain values of scene files.
+`mesh` is null if the mesh stays, empty for the mesh of the first scene, else the name of a folder beside the
+journal that has the mesh in a scene. The line of an opened scene has all its tables, so that only the mesh
+must still be in the files.
 
 A line counts once its newline is written. If the program was killed during a line, its part is ignored. A
 refused line is named by its number: remove it and the lines after it to recover the steps before.
@@ -38,12 +39,13 @@ from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_toml.scene_meshes import SOURCES
 from autocolor.files.scene_writing import write_scene
-from autocolor.journal.history import Drop, Edit, History, Keep, Open, Redo, Saved, Show, Step, Undo
+from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Saved, Show, Step
 from autocolor.journal.places import Opened, Source, checksum_of, opened
-from autocolor.journal.timeline import have_one_look
+from autocolor.journal.timeline import WAYS
 from autocolor.scene.columns import difference, fields_of, to_plain
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
+from autocolor.scene.view import View
 
 VERSION: Final = 2
 
@@ -125,8 +127,8 @@ def step_line(step: Step, start: Scene, meshes: MeshesBeside) -> str:
             return _line({"step": type(step).__name__.lower(), "name": name})
         case Saved():
             return _line({"step": "saved" if step.is_own else "on_disk", "files": step.files})
-        case Undo(steps) | Redo(steps):
-            return _line({"step": type(step).__name__.lower(), "steps": steps})
+        case Move(way, steps):
+            return _line({"step": way, "steps": steps})
 
 
 def _line(record: Mapping[str, object]) -> str:
@@ -275,10 +277,11 @@ STEPS: Final[Mapping[str, Mapping[str, tuple[type, ...]]]] = {
     "drop": {"name": (str,)},
     "saved": {"files": (dict,)},
     "on_disk": {"files": (dict,)},
-    "undo": {"steps": (int,)},
-    "redo": {"steps": (int,)},
+    **{way: {"steps": (int,)} for way in WAYS},
 }
 """The required fields of the kinds of steps, with the types of their values."""
+
+NO_STEP: Final = "there must be a step to {}, and there is none; remove the line"
 
 Record = dict[str, Any]
 """The fields of a step with values of the right types."""
@@ -313,8 +316,6 @@ def _is_step(record: Record) -> bool:
         return False
     if kind == "begin":
         return record["version"] in (1, VERSION)
-    if kind in ("undo", "redo"):
-        return bool(record["steps"] >= 1)
     if kind in ("saved", "on_disk"):
         return all(isinstance(stamp, str) for stamp in record["files"].values())
     if kind == "edit":
@@ -323,9 +324,6 @@ def _is_step(record: Record) -> bool:
         has_right_mesh = record["mesh"] is None or change == "replace"
         return has_right_row and has_right_mesh and not (change.startswith("without") and record["columns"])
     return True
-
-
-NO_STEP: Final = "there must be a step to {}, and there is none; remove the line"
 
 
 def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Path) -> None:
@@ -346,17 +344,19 @@ def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Pat
             history.take(scene, record["joins"])
         case "open":
             history.open(*_opened(record, history))
-        case "keep" | "show" | "drop":
+        case "keep" | "drop":
             getattr(history, kind)(record["name"])
+        case "show":
+            history.go(history.shown(record["name"]), Show(record["name"]))
         case "saved" | "on_disk":
             history.mark_saved(record["files"], is_own=kind == "saved")
-        case "undo" | "redo":
-            try:
-                getattr(history, kind)(record["steps"])
-            except IndexError:
-                raise InputError(NO_STEP.format(kind)) from None
-        case _:
+        case "begin":
             raise InputError("a journal must begin once; remove the line")
+        case way:
+            try:
+                history.move(way, record["steps"])
+            except IndexError:
+                raise InputError(NO_STEP.format(way)) from None
 
 
 class EarlierSteps:
@@ -366,32 +366,32 @@ class EarlierSteps:
     """
 
     def __init__(self) -> None:
-        self._befores: list[Opened] = []
-        self._afters: list[Opened] = []
+        self._befores: list[tuple[View, int]] = []
+        """The view before each step of version 1, and how many steps there were to undo."""
+        self._afters: list[tuple[View, int]] = []
 
     def take(self, record: Record, history: History, meshes: dict[str, Mesh], folder: Path) -> None:
         """Take a step in a history, as `_take` does."""
-        kind, present = record["step"], history.timeline.present
-        view = None
+        kind, view = record["step"], history.scene.view
+        now = view, len(history.to_undo)
         if kind in ("undo", "redo"):
-            there, here = self._befores, self._afters
-            if kind == "redo":
-                there, here = here, there
+            ways = self._befores, self._afters
+            there, here = ways if kind == "undo" else reversed(ways)
             if not there:
                 raise InputError(NO_STEP.format(kind))
-            before = there.pop()
-            here.append(present)
-            view = before.scene.view
-            if before.place is not present.place or not have_one_look(before.scene, present.scene):
-                _take(record, history, meshes, folder)
+            here.append(now)
+            view, steps = there.pop()
+            for _ in range(abs(steps - now[1])):
+                history.move(kind)
         else:
             _take(record, history, meshes, folder)
             if kind in ("open", "show") or not record.get("joins", True):
-                self._befores.append(present)
+                self._befores.append(now)
                 self._afters.clear()
+            view = history.scene.view
             if kind == "show":
                 view = history.variants[record["name"]].scene.view
-        if view is not None and view != history.scene.view:
+        if view != history.scene.view:
             history.take(history.scene.replace(view=view))
 
 

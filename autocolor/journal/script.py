@@ -20,7 +20,7 @@ import os
 from collections.abc import Mapping
 from typing import Final
 
-from autocolor.journal.history import Drop, Edit, History, Keep, Open, Redo, Saved, Show, Step, Undo
+from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Saved, Show, Step
 from autocolor.journal.journal import MeshesBeside, change_between
 from autocolor.journal.places import Source, checksum_of
 from autocolor.scene.columns import fields_of, to_plain
@@ -68,8 +68,8 @@ def step_statement(step: Step, start: Scene, meshes: MeshesBeside) -> str:
             return f"studio.{type(step).__name__.lower()}_variant({literal(name)})"
         case Saved():
             return f"studio.mark_saved({literal(step.files)})"
-        case Undo(steps) | Redo(steps):
-            return f"studio.{type(step).__name__.lower()}({'' if steps == 1 else steps})"
+        case Move(way, steps):
+            return f"studio.{way}({'' if steps == 1 else steps})"
 
 
 def _edit_statement(edit: Edit, start: Scene, meshes: MeshesBeside) -> str:

@@ -1,4 +1,4 @@
-"""The timeline of a session: the present scene, looks to undo and to redo, and views back and forward.
+"""The timeline of a session: the present scene, the looks to undo and to redo, the views back and forward.
 
 A look is all of a scene but its view. Undo and redo exchange looks, and the present view stays. Views have
 a way back and forward of their own, until another scene is opened: each scene has its own view, even if the
@@ -8,11 +8,17 @@ user comes back to it by undo. A timeline is an immutable value; each action mak
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Final, Literal
 
 from autocolor.journal.places import Opened
 from autocolor.scene.columns import fields_of
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
+
+Way = Literal["undo", "redo", "view_back", "view_forward"]
+"""The ways to move on a timeline."""
+
+WAYS: Final[tuple[Way, ...]] = ("undo", "redo", "view_back", "view_forward")
 
 
 def have_one_look(one: Scene, other: Scene) -> bool:
@@ -39,61 +45,53 @@ class Timeline:
     has_jumped: bool = False
     """Whether several steps were undone at once, and no step was taken since."""
 
-    def edited(self, scene: Scene, joins_look: bool = False, joins_turn: bool = False) -> Timeline:
-        """An edit of the present scene.
+    def edited(self, scene: Scene) -> Timeline:
+        """The timeline after an edit: a new look is a step, and from a new view there is a way back.
 
-        A new look is a step, unless it joins the last one. A new view can be gone back from, unless it joins
-        the last one; it is no step, and the looks to redo stay.
+        A new view alone is no step, and the looks to redo stay.
         """
-        before, present = self.present.scene, Opened(scene, self.present.place)
-        after = self
-        if not have_one_look(before, scene) and not joins_look:
+        before, after = self.present.scene, self
+        if not have_one_look(before, scene):
             after = self._stepped()
         if scene.view != before.view:
-            back = self.views_back if joins_turn else (*self.views_back, before.view)
-            after = replace(after, views_back=back, views_forward=())
-        return replace(after, present=present)
+            after = replace(after, views_back=(*self.views_back, before.view), views_forward=())
+        return replace(after, present=Opened(scene, self.present.place))
 
     def moved_to(self, opened: Opened, keeps_view: bool = False) -> Timeline:
         """A step to another state; with `keeps_view`, in the present view if it is of the same place."""
         return self._stepped()._at(self._seen(opened) if keeps_view else opened)
 
-    def undone(self, steps: int = 1) -> Timeline:
-        """The timeline after some steps were undone at once. Raises IndexError if there are not so many."""
-        there = replace(self, has_jumped=self.has_jumped or steps > 1)
+    def moved(self, way: Way, steps: int = 1) -> Timeline:
+        """The timeline after some steps on a way at once. Raises IndexError if there are not so many."""
+        if steps < 1:
+            raise IndexError
+        there = replace(self, has_jumped=self.has_jumped or (way == "undo" and steps > 1))
         for _ in range(steps):
-            before, now = there.to_undo[-1], there.present
-            there = replace(there._at(there._seen(before)), to_undo=there.to_undo[:-1])
-            there = replace(there, to_redo=(*there.to_redo, now))
+            there = there._moved_once(way)
         return there
 
-    def redone(self, steps: int = 1) -> Timeline:
-        """The timeline after some steps were redone at once. Raises IndexError if there are not so many."""
-        there = self
-        for _ in range(steps):
-            after, now = there.to_redo[-1], there.present
-            there = replace(there._at(there._seen(after)), to_redo=there.to_redo[:-1])
-            there = replace(there, to_undo=(*there.to_undo, now))
-        return there
-
-    def turned_back(self) -> Timeline:
-        """The timeline with the view before the present view. Raises IndexError if there is none."""
-        view, now = self.views_back[-1], self.present.scene.view
-        there = self._at(self._with_view(self.present, view))
-        return replace(there, views_back=self.views_back[:-1], views_forward=(*self.views_forward, now))
-
-    def turned_forward(self) -> Timeline:
-        """The timeline with the view after the present view. Raises IndexError if there is none."""
-        view, now = self.views_forward[-1], self.present.scene.view
-        there = self._at(self._with_view(self.present, view))
-        return replace(there, views_back=(*self.views_back, now), views_forward=self.views_forward[:-1])
+    def _moved_once(self, way: Way) -> Timeline:
+        present, back, forward = self.present, self.views_back, self.views_forward
+        match way:
+            case "undo":
+                there = self._at(self._seen(self.to_undo[-1]))
+                return replace(there, to_undo=self.to_undo[:-1], to_redo=(*self.to_redo, present))
+            case "redo":
+                there = self._at(self._seen(self.to_redo[-1]))
+                return replace(there, to_undo=(*self.to_undo, present), to_redo=self.to_redo[:-1])
+            case "view_back":
+                there = self._at(_with_view(present, back[-1]))
+                return replace(there, views_back=back[:-1], views_forward=(*forward, present.scene.view))
+            case "view_forward":
+                there = self._at(_with_view(present, forward[-1]))
+                return replace(there, views_back=(*back, present.scene.view), views_forward=forward[:-1])
 
     def _stepped(self) -> Timeline:
         """The timeline after a step that is still to change the present state."""
         return replace(self, to_undo=(*self.to_undo, self.present), to_redo=(), has_jumped=False)
 
     def _at(self, present: Opened) -> Timeline:
-        """The timeline with another present state; views of another place end."""
+        """The timeline with another present state; the ways between views end where another place begins."""
         if present.place is self.present.place:
             return replace(self, present=present)
         return replace(self, present=present, views_back=(), views_forward=())
@@ -101,9 +99,9 @@ class Timeline:
     def _seen(self, opened: Opened) -> Opened:
         """A state in the present view, if it is of the same place."""
         is_here = opened.place is self.present.place
-        return self._with_view(opened, self.present.scene.view) if is_here else opened
+        return _with_view(opened, self.present.scene.view) if is_here else opened
 
-    @staticmethod
-    def _with_view(opened: Opened, view: View) -> Opened:
-        scene = opened.scene
-        return opened if scene.view == view else opened._replace(scene=scene.replace(view=view))
+
+def _with_view(opened: Opened, view: View) -> Opened:
+    scene = opened.scene
+    return opened if scene.view == view else opened._replace(scene=scene.replace(view=view))

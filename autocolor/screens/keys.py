@@ -23,9 +23,21 @@ def toggle(viewer: Viewer, screen: str) -> None:
 
 def show_other(viewer: Viewer) -> None:
     """Show the state to compare with, over the picture."""
+    session = viewer.session
+    session.compared_from = PICTURE
     if not viewer.board.screen.shows_picture:
-        viewer.session.turn_to(PICTURE)
-    compare(viewer.session)
+        session.compared_from = session.screen
+        session.turn_to(PICTURE)
+    compare(session)
+
+
+def show_present(viewer: Viewer) -> None:
+    """Show the present state again, on the screen from which the other state was asked for."""
+    session = viewer.session
+    end_comparing(session)
+    if session.screen == PICTURE:
+        session.turn_to(session.compared_from)
+    session.compared_from = PICTURE
 
 
 def undo_step(viewer: Viewer) -> None:
@@ -213,7 +225,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
         (Chord("b"),),
         "while held: the state before the last step",
         lambda viewer, _: show_other(viewer),
-        release=lambda viewer: end_comparing(viewer.session),
+        release=show_present,
     ),
     Binding(
         (Chord("left", alt=True), Chord("right", alt=True)),

@@ -118,6 +118,8 @@ class Session:
     """Another state that is shown in place of the present one."""
     screen: str = PICTURE
     """The name of the screen that is shown; setting it turns to another screen."""
+    compared_from: str = PICTURE
+    """The screen to return to when comparing by a key ends."""
     news: Message = NO_NEWS
     """The last message."""
 
