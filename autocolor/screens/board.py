@@ -19,7 +19,7 @@ from autocolor.scene.kinds import in_digits
 from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
 from autocolor.screens.main_menu import last_rows, rows_of_menu
-from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items
+from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items, offer_button
 from autocolor.screens.screen import Handle, Sample, Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
@@ -142,7 +142,8 @@ class Board:
             rows = self._menu_rows() if has_menu else ()
             letters = letter_panel(self.typing.key) if by_letters else ()
             over = (*letters, *(() if self.hides_panels else self.over()))
-            self._layout = state, Layout(self.screen, rows, over, self._opened, self._list_of)
+            offer = offer_button(session.news.offer) if session.has_news else None
+            self._layout = state, Layout(self.screen, rows, over, offer, self._opened, self._list_of)
         return self._layout[1]
 
     def forget(self) -> None:
@@ -539,6 +540,8 @@ class Board:
         end = MENU.left if layout.rows else WIDTH
         self._message = message_items(self.messages, end) if has_message else []
         items += self._message
+        if layout.offer is not None:
+            items += layout.offer.items(layout.offer is lit)
         return Page(screen.base(), items, with_loads(self.session.studio.entries, screen.loads()))
 
     @property

@@ -1,10 +1,13 @@
-"""What an edit of lights changed in the picture, and why it changed nothing.
+"""What an edit of lights did to the exposure, and why it changed nothing.
 
 With automatic exposure and one light alone, any intensity of the light gives the same levels.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -14,15 +17,15 @@ from autocolor.mapping.intensity import held_exposure, stage_surfaces
 from autocolor.scene.columns import fields_of
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import AUTO, LEVELS, Scene
-from autocolor.screens.session import Session
+from autocolor.screens.session import Offer, Session
 from autocolor.studio import Studio
 from autocolor.widgets.widget import titled
 
 LEAST_CHANGED: Final = 1e-4
 """Assumed: the share of the visible pixels whose words an edit must change by more than rounding."""
 
-AUTOMATIC: Final = "automatic exposure maps the brightest to the highest level; "
-"""The reason that ends with how to hold the exposure."""
+FOLLOWED: Final = 0.1
+"""Assumed: the change of a largest intensity, as a share of it, from which on a message says so."""
 
 
 def looks_equal(one: DisplayImage, other: DisplayImage) -> bool:
@@ -52,24 +55,27 @@ def is_edited(before: Light | None, after: Light) -> bool:
     return before != after and one == other
 
 
-def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
-    """Why edits of lights since an image changed nothing that is seen; empty if they did, or were others."""
-    scene, start = studio.scene, before.scene
-    is_other = any(
-        vars(scene)[name] is not vars(start)[name] for name in fields_of(Scene) if name != "lights"
-    )
-    olds = {light.name: light for light in start.lights}
-    edited = [light for light in scene.lights if is_edited(olds.get(light.name), light)]
-    is_renamed = len(scene.lights) == len(olds) and olds.keys() != {light.name for light in scene.lights}
-    if is_other or is_renamed or not edited or not looks_equal(before, studio.display_image):
-        return ""
-    which = titled("light", edited[0].name) if len(edited) == 1 else "every edited light"
-    versions = [version for light in edited for version in (light, olds.get(light.name, light))]
+def edited_lights(now: Scene, before: Scene) -> list[tuple[Light | None, Light]]:
+    """The lights that an edit changed, before and after; none if it changed something else as well."""
+    names = [name for name in fields_of(Scene) if name not in ("lights", "view")]
+    olds = {light.name: light for light in before.lights}
+    is_renamed = len(now.lights) == len(olds) and olds.keys() != {light.name for light in now.lights}
+    if is_renamed or any(vars(now)[name] is not vars(before)[name] for name in names):
+        return []
+    pairs = [(olds.get(light.name), light) for light in now.lights]
+    return [pair for pair in pairs if is_edited(*pair)]
+
+
+def reason_of_no_change(studio: Studio, edited: Sequence[tuple[Light | None, Light]]) -> str:
+    """Why edits of lights changed nothing that is seen."""
+    scene = studio.scene
+    which = titled("light", edited[0][1].name) if len(edited) == 1 else "every edited light"
+    versions = [light for pair in edited for light in pair if light is not None]
     if not any(light.on for light in versions):
         return f"{which} is off"
     if not any(light.on and light.intensity for light in versions):
         return f"{which} has the intensity 0"
-    names = [light.name for light in edited]
+    names = [light.name for _, light in edited]
     alone = scene.replace(
         lights=[light.replace(on=light.name in names, intensity=1) for light in scene.lights],
         ambient=0,
@@ -78,20 +84,52 @@ def reason_of_no_change(studio: Studio, before: DisplayImage) -> str:
     )
     if not studio.image_of(alone).picture.ranges.whole.maximum:
         return f"{which} shines on nothing that is seen"
-    held = held_exposure(before.mapped, scene.scaling, scene.exposure, stage_surfaces(scene))
-    if held != scene.exposure and not looks_equal(before, studio.image_of(scene.replace(exposure=held))):
-        return AUTOMATIC
     return "no point that is seen gets another level"
 
 
+def ranges_of(image: DisplayImage) -> dict[str, tuple[float, float]]:
+    """The ranges of intensities that an image maps, by the names of surfaces, as an exposure holds them."""
+    scene = image.scene
+    held = held_exposure(image.mapped, scene.scaling, scene.exposure, stage_surfaces(scene))
+    return {} if isinstance(held, str) else dict(held)
+
+
+def growth(before: DisplayImage, now: DisplayImage) -> float:
+    """The ratio by which the largest intensity that is mapped has grown, for the surface where it is largest.
+
+    A ratio below 1 is a loss. It is 1 if the ranges are held.
+    """
+    olds, news = ranges_of(before), ranges_of(now)
+    ratios = [news[name][1] / high for name, (_, high) in olds.items() if name in news and high > 0]
+    return max((ratio for ratio in ratios if ratio > 0), key=lambda ratio: abs(math.log(ratio)), default=1.0)
+
+
 def tell_effect(session: Session) -> bool:
-    """If the last edits of lights changed nothing that is seen, say why; returns whether they did not."""
+    """Say that the exposure followed the last edits of lights, or why they changed nothing that is seen.
+
+    Returns whether there is something to say.
+    """
     edits, session.edits = session.edits, None
     if edits is None or edits[1] is not session.scene:
         return False
-    reason = reason_of_no_change(session.studio, edits[0])
-    if reason == AUTOMATIC:
-        reason += "E holds all" if session.has_keyboard else "hold the exposure in the menu of lights"
-    if reason:
-        session.tell(f"no change: {reason}", is_warning=True)
-    return bool(reason)
+    before, studio = edits[0], session.studio
+    edited = edited_lights(studio.scene, before.scene)
+    if not edited:
+        return False
+    image = studio.display_image
+    ratio = growth(before, image)
+    if abs(ratio - 1) > FOLLOWED:
+        more = "more" if ratio > 1 else "less"
+        hold = partial(hold_ranges, session, before)
+        session.tell(f"exposed again: {more} light looks the same", True, offer=Offer("hold all", hold))
+        return True
+    if not looks_equal(before, image):
+        return False
+    session.tell(f"no change: {reason_of_no_change(studio, edited)}", is_warning=True)
+    return True
+
+
+def hold_ranges(session: Session, image: DisplayImage) -> None:
+    """Hold the ranges of an image before the last edits, as one step, so that less light is darker."""
+    session.edit(session.scene.replace(exposure=tuple(ranges_of(image).items())))
+    session.tell("all ranges are held as before the edit: less light is darker")

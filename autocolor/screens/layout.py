@@ -27,6 +27,8 @@ class Layout:
     """The rows of the menu with their areas; none while the menu is away."""
     over: Sequence[Widget] = ()
     """The widgets over every screen, the topmost first."""
+    offer: Widget | None = None
+    """The button beside the message."""
     opened: str = ""
     """The key of the row whose wide bar or list is open, if that row is on this page of the menu."""
     list_names: Callable[[Choice], NameList] | None = None
@@ -67,7 +69,8 @@ class Layout:
         """Everything that can be pointed at, the topmost first."""
         wide = () if self.wide is None else (self.wide,)
         listed = () if self.listed is None else self.listed.rows
-        return (*listed, *wide, *self.over, *self.rows, *self.beside)
+        offer = () if self.offer is None else (self.offer,)
+        return (*offer, *listed, *wide, *self.over, *self.rows, *self.beside)
 
     @cached_property
     def by_key(self) -> Mapping[str, Sequence[Widget]]:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 from typing import Final, NamedTuple
 
-from autocolor.screens.session import Session
+from autocolor.screens.session import Offer, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
@@ -23,7 +23,7 @@ from autocolor.widgets.items import (
     text,
 )
 from autocolor.widgets.menu import MESSAGE_CHARACTERS, MESSAGE_LINES
-from autocolor.widgets.widget import Typed, Widget
+from autocolor.widgets.widget import MARGIN, PanelButton, Typed, Widget
 
 MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
 LINE_STEP: Final = 12
@@ -80,6 +80,14 @@ def lines_of_message(part: MessagePart, most: int) -> list[MessagePart]:
         line, selected = f"..{line[cut + 2 :]}", max(2, selected - cut)
     firsts = range(0, len(line), most)
     return [MessagePart(line[first : first + most], ink, max(0, selected - first)) for first in firsts]
+
+
+def offer_button(offer: Offer | None) -> Widget | None:
+    """The button of an offer, at the right end of the message line."""
+    if offer is None:
+        return None
+    left = WIDTH - CHARACTER * len(offer.label) - 2 * MARGIN
+    return PanelButton(offer.label, area=MESSAGE._replace(left=left), run=offer.run, within="message")
 
 
 NUMBERS: Final = "0123456789.-+"

@@ -53,6 +53,13 @@ LEAST_SECONDS: Final = 1.0
 """Assumed: how long a message is shown at least while the pointer moves from thing to thing."""
 
 
+class Offer(NamedTuple):
+    """An action that a message offers: the label of its button, and the action."""
+
+    label: str
+    run: Callable[[], object]
+
+
 class Message(NamedTuple):
     """A message, whether it is a warning, and when it was shown first."""
 
@@ -63,6 +70,8 @@ class Message(NamedTuple):
     """Whether it is shown until the next action, or until the menu comes."""
     seconds: float = MESSAGE_SECONDS
     """How long it is shown if it is not persistent."""
+    offer: Offer | None = None
+    """An action whose button stands beside the message."""
 
 
 NO_NEWS: Final = Message("", False, 0.0)
@@ -237,7 +246,9 @@ class Session:
         """Let the message go as soon as it was shown for LEAST_SECONDS."""
         self.news = self.news._replace(seconds=LEAST_SECONDS)
 
-    def tell(self, message: str, is_warning: bool = False, persistent: bool = False) -> None:
+    def tell(
+        self, message: str, is_warning: bool = False, persistent: bool = False, offer: Offer | None = None
+    ) -> None:
         """Show a message for some seconds; with `persistent`, until the next action.
 
         An empty message takes the last message away. Letters that cannot be printed, as in names of files,
@@ -245,7 +256,8 @@ class Session:
         """
         if not self.is_at_hand:
             message = message.replace(str(self.root), self.root.name or "/")
-        self.news = Message(escaped(message), is_warning, time.monotonic(), persistent, MESSAGE_SECONDS)
+        now = time.monotonic()
+        self.news = Message(escaped(message), is_warning, now, persistent, offer=offer)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first and the number of the others."""
