@@ -89,7 +89,11 @@ class Board:
         """The page of the list; None for the page of the present name."""
         self._menu_page = 0
         self._folds: dict[str, dict[str, bool]] = {}
-        """By screen, whether the user opened or folded a section of its menu, the last used at the end."""
+        """By screen, whether sections of its menu are to be open or folded, the last used at the end."""
+        self._sections: dict[str, bool] = {}
+        """Whether each section of the present menu is open."""
+        self._folded_at, self._folded = Place(-1, -1), ""
+        """Where a section's heading was picked last, and its key."""
         self._message: list[Item] = []
         """The message on the page; it covers the screen below it."""
         self._grabbed: Widget | Handle | Screen | None = None
@@ -156,11 +160,15 @@ class Board:
         last = [*last_rows(self.session, self.screen), *self._hiding_rows()]
         folds = self._folds.get(self.session.screen, {})
         rows = folded(rows, folds, self._fold, MENU.height - lines_of(last))
+        self._sections = {row.label: row.is_open for row in rows if isinstance(row, Section)}
         return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
 
     def _fold(self, section: str, is_open: bool) -> None:
-        """Open or fold a section of this menu, and note that it was used last."""
+        """Open or fold a section of this menu, and note that it was used last; those above it stay."""
         folds = self._folds.setdefault(self.session.screen, {})
+        names = list(self._sections)
+        for name in names[: names.index(section)]:
+            folds[name] = self._sections[name]
         folds.pop(section, None)
         folds[section] = is_open
 
@@ -347,8 +355,13 @@ class Board:
         if self._leaves_list() and not MENU.has(element, line):
             # Beside the menu, this pick does no more.
             return
+        if self._folded_at == self._pointer:
+            # The second of two clicks at one place must not fall on a row that came there.
+            widget = self.layout.lit(self._folded, NOWHERE) or widget
         if widget is not None:
             self._let_go()
+            self._folded_at = self._pointer if isinstance(widget, Section) else Place(-1, -1)
+            self._folded = widget.key
             self.pick_widget(widget, self._pointer)
         elif self.is_covered(element, line):
             return

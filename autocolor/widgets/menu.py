@@ -254,15 +254,18 @@ def sections_of(rows: Sequence[Widget]) -> list[list[Widget]]:
 def open_sections(heights: Mapping[str, int], folds: Mapping[str, bool], room: int) -> set[str]:
     """The sections that are open, by the heights of their rows and the lines of room for all of these rows.
 
-    `folds` has whether the user opened or folded a section, the last used section at the end. The section
-    used last is open in any case; the others are open while there is room: first the sections that the user
-    opened, the last used first, then the sections that the user has not touched, from the top.
+    `folds` has whether sections are to be open or folded, the last used section at the end. That section and
+    the sections above it are as `folds` has them, so that its heading stays in its place; only if they do not
+    fit, those at the top are folded. The sections below are open while there is room, unless `folds` has them
+    folded.
     """
-    used = [name for name in reversed(list(folds)) if folds[name] and name in heights]
-    is_open = set(used[:1])
-    room -= sum(heights[name] for name in is_open)
-    for name in (*used[1:], *(name for name in heights if name not in folds)):
-        if heights[name] <= room:
-            is_open.add(name)
-            room -= heights[name]
-    return is_open
+    names = list(heights)
+    used = next((name for name in reversed(list(folds)) if name in heights), None)
+    end = 0 if used is None else names.index(used) + 1
+    is_open = [name for name in names[:end] if folds.get(name, False)]
+    while len(is_open) > 1 and sum(heights[name] for name in is_open) > room:
+        del is_open[0]
+    for name in names[end:]:
+        if folds.get(name, True) and sum(heights[each] for each in (*is_open, name)) <= room:
+            is_open.append(name)
+    return set(is_open)

@@ -182,36 +182,35 @@ def after(uses: list[tuple[str, bool]]) -> dict[str, bool]:
 
 
 @given(heights, folds, st.integers(-20, 120))
-def test_the_open_sections_fit_but_for_the_section_that_was_used_last(
+def test_a_used_section_and_those_above_stay_as_they_are_if_they_fit(
     heights: dict[str, int], uses: list[tuple[str, bool]], room: int
 ) -> None:
-    folds = after(uses)
+    folds, names = after(uses), list(heights)
     is_open = open_sections(heights, folds, room)
-    used = [name for name in folds if folds[name] and name in heights]
-    assert set(used[-1:]) <= is_open <= {name for name in heights if folds.get(name, True)}
+    used = [name for name in folds if name in heights][-1:]
+    above = names[: names.index(used[0]) + 1] if used else []
+    wanted = [name for name in above if folds.get(name, False)]
+    if sum(heights[name] for name in wanted) <= room:
+        assert is_open & set(above) == set(wanted)
+    else:
+        # The sections at the top are folded first, and the used one last.
+        left = [name for name in above if name in is_open]
+        assert left == wanted[len(wanted) - len(left) :]
+        assert left or not wanted
+    below = [name for name in names if name not in above]
     total = sum(heights[name] for name in is_open)
-    assert total <= room or is_open - {name for name in heights if not heights[name]} <= set(used[-1:])
-    # A section stays folded only if the user folded it, or there is no room for it.
-    for name in set(heights) - is_open:
-        assert not folds.get(name, True) or total + heights[name] > room
-
-
-@given(heights, folds, st.integers(0, 120), st.data())
-def test_a_row_that_is_used_folds_no_section(
-    heights: dict[str, int], uses: list[tuple[str, bool]], room: int, data: st.DataObject
-) -> None:
-    is_open = open_sections(heights, after(uses), room)
-    if is_open and sum(heights[name] for name in is_open) <= room:
-        used = data.draw(st.sampled_from(sorted(is_open)))
-        assert is_open == open_sections(heights, after([*uses, (used, True)]), room)
+    for name in below:
+        assert (name in is_open) <= folds.get(name, True)
+        assert name in is_open or not folds.get(name, True) or total + heights[name] > room
+    assert total <= room or not is_open & set(below)
 
 
 def test_sections_that_nobody_used_are_open_from_the_top() -> None:
     assert open_sections({"a": 10, "b": 10, "c": 10}, {}, 25) == {"a", "b"}
     assert open_sections({"a": 10, "b": 30, "c": 10}, {}, 25) == {"a", "c"}
-    assert open_sections({"a": 10, "b": 30, "c": 10}, {"b": True}, 25) == {"b"}
-    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": False}, 25) == {"b", "c"}
-    assert open_sections({"a": 10, "b": 10, "c": 10}, {"b": True, "c": True, "a": True}, 25) == {"a", "c"}
+    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": True, "b": True}, 20) == {"a", "b"}
+    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": True, "b": True, "c": True}, 20) == {"b", "c"}
+    assert open_sections({"a": 10, "b": 10, "c": 10}, {"b": True, "a": False}, 25) == {"b", "c"}
 
 
 def menu_of(*sizes: int) -> list[Widget]:
