@@ -421,7 +421,7 @@ class Viewer:
         self._watching.begin(self.studio)
 
     def compare(self) -> None:
-        """Show the look to compare with, over the picture."""
+        """Show the state to compare with, over the picture."""
         self._compared_from = PICTURE
         if not self.board.screen.shows_picture:
             self._compared_from = self.session.screen
@@ -429,7 +429,7 @@ class Viewer:
         self.session.compare()
 
     def end_comparing(self) -> None:
-        """Show the present look again, on the screen from which the other look was asked for."""
+        """Show the present state again, on the screen from which the other one was asked for."""
         self.session.end_comparing()
         if self.session.screen == PICTURE:
             self.session.turn_to(self._compared_from)
@@ -680,7 +680,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     ),
     Binding(
         (Chord("b"),),
-        "while held: the look before the last step",
+        "while held: the state before the last step",
         lambda viewer, _: viewer.compare(),
         release=lambda viewer: viewer.end_comparing(),
     ),
