@@ -200,7 +200,7 @@ def connected(monitor: Monitor, viewer: Viewer, update: Callable[[], None] = lam
     from autocolor.screens.session import Clipboard
 
     def on_key(key: Key) -> bool:
-        return viewer.on_key(key.name, key.control, key.shift, key.alt, key.text, key.repeated)
+        return viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated, key.alt)
 
     def on_pointer(pointer: Pointer) -> None:
         element, line, modifiers = pointer.element, pointer.line, (pointer.shift, pointer.control)

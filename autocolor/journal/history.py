@@ -286,16 +286,21 @@ class History:
         return not file.is_outdated and file.scene.equals(opened.scene)
 
     def _go(self, after: Timeline) -> None:
-        """Go to a timeline. If it forgets steps that were undone at once, their end becomes a variant."""
+        """Go to a timeline. If it forgets steps that were undone at once, their end is a variant from now on."""
         before, self.timeline = self.timeline, after
         if before.has_jumped and not after.has_jumped:
-            # A gesture that came back and goes on forgets the same steps again.
             end = next(iter(before.to_redo), None)
-            is_kept = any(end is variant for variant in self.variants.values())
-            if end is not None and not is_kept and len(self.variants) < MOST_VARIANTS:
+            if end is not None and not self._has_variant(end) and len(self.variants) < MOST_VARIANTS:
                 name = self.variants.free_name()
                 self.variants = self.variants.with_variant(name, end)
                 self._branches.add(name)
+
+    def _has_variant(self, opened: Opened) -> bool:
+        """Whether a variant has the look and the place of a state."""
+        return any(
+            each.place is opened.place and have_one_look(each.scene, opened.scene)
+            for each in self.variants.values()
+        )
 
     def _note(self, edit: Edit) -> None:
         """Note an edit among the steps; an edit that joins an edit extends it, so that a drag is one edit."""

@@ -117,9 +117,9 @@ class Viewer:
         name: str,
         control: bool = False,
         shift: bool = False,
-        alt: bool = False,
         typed: str = "",
         repeated: bool = False,
+        alt: bool = False,
     ) -> bool:
         """Handle a key press; returns False if the key does nothing here.
 

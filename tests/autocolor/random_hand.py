@@ -113,6 +113,6 @@ class RandomHandWithKeys(RandomHand):
     def _press(self, chord: Chord, releases: bool = True) -> None:
         typed = chord.name if chord.is_sign or (len(chord.name) == 1 and not chord.control) else ""
         for repeated in (False, True)[: self._random.randint(1, 2)]:
-            self.viewer.on_key(chord.name, chord.control, chord.shift, typed, repeated)
+            self.viewer.on_key(chord.name, chord.control, chord.shift, typed, repeated, chord.alt)
         if releases:
             self.viewer.on_release(chord.name)

@@ -33,6 +33,7 @@ from autocolor import (
     scene_of,
     testing,
 )
+from autocolor.journal.history import Move
 from autocolor.mapping.ranges import SCREENS
 from autocolor.rendering import Rendering, rendering
 from autocolor.testing import (
@@ -293,25 +294,29 @@ def test_any_edits_leave_what_a_fresh_studio_sends_and_undo_takes_them_back(
     words: str, edits: list[Edit]
 ) -> None:
     studio, display = opened_with(words)
-    states = [(studio.scene, held(display))]
+    start, looks, memories = studio.scene, [studio.scene], held(display)
     for edit in edits:
-        # An edit that changes nothing leaves the scene, and is no step.
-        if apply(studio, edit) and studio.scene is not states[-1][0]:
-            states.append((studio.scene, held(display)))
-        assert held(display) == states[-1][1]
+        # An edit that changes nothing leaves the scene. A view is no step.
+        if apply(studio, edit) and studio.scene is not looks[-1]:
+            looks[len(looks) - (edit[0] == "view") :] = [studio.scene]
+            memories = held(display)
+        assert held(display) == memories
     anew, other = opened(studio.scene)
     assert held(display) == held(other) == (studio.words.tobytes(), studio.entries.tobytes())
     assert display.words.max() < SCREENS.first
     assert studio.picture.intensity.tobytes() == anew.picture.intensity.tobytes()
     assert (studio.picture.normals is None) == (anew.picture.normals is None)
-    for scene, memories in states[-2::-1]:
-        assert studio.undo()
-        assert (studio.scene, held(display)) == (scene, memories)
-    assert not studio.undo()
-    for scene, memories in states[1:]:
-        assert studio.redo()
-        assert (studio.scene, held(display)) == (scene, memories)
-    assert not studio.redo()
+    view = studio.scene.view
+    for move, ends in ((studio.undo, looks[-2::-1]), (studio.redo, looks[1:])):
+        for scene in ends:
+            assert move()
+            assert studio.scene.equals(scene.replace(view=view))
+            assert held(display) == fresh(studio.scene)
+        assert not move()
+    studio.undo(len(looks) - 1)
+    while studio.view_back():
+        assert held(display) == fresh(studio.scene)
+    assert studio.scene.equals(start)
 
 
 @given(scenes())
@@ -344,7 +349,7 @@ def test_several_steps_are_undone_and_redone_at_once_and_sent_once() -> None:
     assert not studio.undo(0)
     assert not studio.redo(2)
     assert studio.scene is scenes[2]
-    assert studio.history.steps[3:] == ["undo"] * 3 + ["redo"] * 2
+    assert studio.history.steps[3:] == [Move("undo", 3), Move("redo", 2)]
 
 
 def test_a_new_edit_forgets_what_was_undone_and_a_new_variant_does_not() -> None:
@@ -373,8 +378,48 @@ def test_a_drag_is_one_step() -> None:
     # The drag comes back to where it began.
     studio.edit(studio.scene.with_surface("body", blend=own), same_step=True)
     assert not studio.is_changed
+    assert not studio.undo()
+
+
+def test_a_glance_around_leaves_what_was_undone_and_undo_and_redo_leave_the_view() -> None:
+    studio, display = opened()
+    for blend in (0.2, 0.3):
+        studio.recolor("body", blend=blend)
     assert studio.undo()
-    assert studio.scene is scene
+    for angle in (5, 10):
+        studio.view(angle=angle)
+    written = display.frame_buffer.written
+    assert studio.redo()
+    assert (studio.scene.view.angle, studio.scene.surfaces["body"].paint.blend) == (10, 0.3)
+    assert studio.undo(2)
+    # Looks of one view differ in entries alone.
+    assert display.frame_buffer.written == written
+    assert studio.view_back()
+    assert (studio.scene.view.angle, repr(studio)) == (5, "Studio('scene', to undo 0, to redo 2)")
+    assert studio.view_forward()
+    assert not studio.view_forward()
+    assert studio.scene.view.angle == 10
+    assert studio.is_changed
+    assert held(display) == fresh(studio.scene)
+
+
+def test_a_gesture_that_is_taken_back_was_never_made() -> None:
+    studio, display = opened()
+    studio.recolor("body", blend=0.5)
+    studio.undo()
+    studio.view(angle=5)
+    studio.view_back()
+    before, known = held(display), studio.history.timeline
+    for edit in (studio.scene.with_view(angle=7), studio.scene.with_light("key", on=False)):
+        studio.edit(edit)
+        studio.edit(studio.scene.replace(ambient=0.5), same_step=True)
+        studio.keep_variant()
+        studio.take_back()
+        assert held(display) == before
+        assert studio.history.timeline == known
+    studio.redo()
+    studio.take_back()
+    assert studio.scene.surfaces["body"].paint.blend == 0.5
 
 
 def test_the_first_edit_of_a_drag_after_an_undo_is_a_step_of_its_own() -> None:
@@ -454,8 +499,9 @@ def test_what_a_coarse_picture_would_falsify_is_done_with_the_fine_one(tmp_path:
     assert studio.is_coarse
     image = studio.image_of(first)
     assert (image.words.tobytes(), image.entries.tobytes()) == before
-    studio.undo()
+    studio.take_back()
     assert not studio.is_coarse
+    assert studio.scene.view.angle == 31
 
 
 def test_a_picture_that_is_fast_enough_is_never_coarse(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -491,10 +537,10 @@ def test_watching_refines_a_coarse_picture_and_goes_on_with_it_and_is_no_step() 
     studio.view(angle=30)
     assert studio.words.tolist() != words.tolist()
     assert np.concatenate([first, *(rest for _, rest in lines)]).tolist() == words.tolist()
-    assert studio.undo()
-    assert studio.scene is scene
-    assert studio.undo()
-    assert not studio.undo()
+    assert studio.view_back()
+    assert studio.scene.equals(scene)
+    assert studio.view_back()
+    assert not studio.view_back()
 
 
 # What is sent.
@@ -599,8 +645,11 @@ def test_named_views_are_saved_taken_and_removed_by_steps() -> None:
     assert studio.scene.view == start.view
     studio.remove_view("hood")
     assert [row.name for row in studio.scene.views] == ["view 1"]
-    assert [studio.undo() for _ in range(6)] == [True] * 5 + [False]
+    # The view itself is no step.
+    assert [studio.undo() for _ in range(4)] == [True] * 3 + [False]
     assert studio.scene is start
+    assert [studio.view_back() for _ in range(3)] == [True, True, False]
+    assert studio.scene.equals(start)
 
 
 def test_everything_can_be_sent_again() -> None:

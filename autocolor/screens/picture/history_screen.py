@@ -35,6 +35,8 @@ DIGITS: Final = 3
 MOST_LETTERS: Final = (WIDTH - 2 * MARGIN) // CHARACTER - DIGITS - 2
 
 BEGIN: Final = "as the session began"
+AGAIN: Final = "opened again"
+"""For a step that did not change the look."""
 
 
 class HistoryScreen(OverPicture):
@@ -42,7 +44,7 @@ class HistoryScreen(OverPicture):
 
     name = HISTORY
     title = "steps"
-    help = "Click a step to go there; undone steps are dim until another edit forgets them"
+    help = "Click a step to go there; several undone steps become a variant by another edit"
 
     is_in_menu = False
 
@@ -102,7 +104,7 @@ class HistoryScreen(OverPicture):
 
         def lines() -> Sequence[tuple[str, str]]:
             steps = [
-                (describe_look(*pair, MOST_LETTERS), describe_look(*pair, MOST_DESCRIBED))
+                (describe_look(*pair, MOST_LETTERS) or AGAIN, describe_look(*pair, MOST_DESCRIBED) or AGAIN)
                 for pair in pairwise(scenes)
             ]
             return [(BEGIN, BEGIN), *steps] if shown.start == 0 else steps

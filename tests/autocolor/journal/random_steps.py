@@ -58,7 +58,8 @@ moves = (
     any_edits
     | recolorings
     | st.tuples(st.just("columns"), st.booleans(), columns_of_scenes)
-    | st.tuples(st.sampled_from(["undo", "redo"]), st.none(), st.none())
+    | st.tuples(st.sampled_from(["undo", "redo"]), st.none(), st.integers(1, 3))
+    | st.tuples(st.sampled_from(["view_back", "view_forward", "take_back"]), st.none(), st.none())
     | st.tuples(st.just("add_light"), st.sampled_from(NAMES), lights())
     | st.tuples(st.just("remove_light"), st.sampled_from(NAMES), st.none())
     | st.tuples(st.just("open"), st.sampled_from(["car", "box.obj"]), st.sampled_from(["materials", "parts"]))
@@ -75,6 +76,8 @@ def take_move(studio: Studio, move: tuple[str, Any, Any], folder: Path) -> None:
         if kind == "columns":
             studio.edit(studio.scene.replace(**value), same_step=what)
         elif kind in ("undo", "redo"):
+            getattr(studio, kind)(value)
+        elif kind in ("view_back", "view_forward", "take_back"):
             getattr(studio, kind)()
         elif kind == "add_light":
             studio.edit(studio.scene.replace(lights=(*studio.scene.lights, value.replace(name=what))))
@@ -118,6 +121,9 @@ def summary(history: History) -> tuple[object, ...]:
         checksum_of(history.scene),
         [checksum_of(scene) for scene in history.to_undo],
         [checksum_of(scene) for scene in history.to_redo],
+        history.timeline.views_back,
+        history.timeline.views_forward,
+        history.timeline.has_jumped,
         {name: (checksum_of(one.scene), one.place.source) for name, one in history.variants.items()},
         history.place.source,
         history.is_changed,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autocolor import UsageError
-from autocolor.journal.history import Edit, History, Undo, Variants
+from autocolor.journal.history import Edit, History, Move, Show, Variants
 from autocolor.journal.places import Opened, ScenePlace, Source
 from tests.small import car
 from tests.tables import call, refused
@@ -14,23 +14,27 @@ CAR = car()
 SCENES = [CAR, *(CAR.replace(ambient=number / 8) for number in range(4))]
 
 
-def test_a_drag_that_came_back_is_still_a_step_to_undo() -> None:
+def test_a_drag_that_came_back_is_no_step_and_may_go_on() -> None:
     history = History(SCENES[0])
+    history.take(SCENES[3])
+    history.move("undo")
     for scene in (SCENES[1], SCENES[2], SCENES[0]):
         history.take(scene, same_step=True)
-    assert history.steps == [Edit(SCENES[0], SCENES[2]), Edit(SCENES[2], SCENES[0], joins=True)]
-    assert history.to_undo == (SCENES[0],)
-    history.undo()
-    assert history.scene is SCENES[0]
+    drag = [Edit(SCENES[0], SCENES[2]), Edit(SCENES[2], SCENES[0], joins=True)]
+    assert history.steps[2:] == drag
+    assert (history.to_undo, history.to_redo) == ((), (SCENES[3],))
+    history.take(SCENES[4], same_step=True)
+    assert history.steps[2:] == [drag[0], Edit(SCENES[2], SCENES[4], joins=True)]
+    assert (history.to_undo, history.to_redo) == ((SCENES[0],), ())
 
 
 def test_an_edit_after_an_undo_begins_a_step_and_forgets_what_was_undone() -> None:
     history = History(SCENES[0])
     history.take(SCENES[1])
-    history.undo()
+    history.move("undo")
     history.take(SCENES[2], same_step=True)
     assert history.to_redo == ()
-    assert history.steps == [Edit(SCENES[0], SCENES[1]), Undo(), Edit(SCENES[0], SCENES[2])]
+    assert history.steps == [Edit(SCENES[0], SCENES[1]), Move("undo"), Edit(SCENES[0], SCENES[2])]
 
 
 def test_each_place_knows_what_was_saved_of_it() -> None:
@@ -41,11 +45,11 @@ def test_each_place_knows_what_was_saved_of_it() -> None:
     history.open(Opened(SCENES[2], ScenePlace(source)), source)
     assert (history.place.source, history.is_changed, history.left_unsaved) == (source, False, ("scene",))
     history.mark_saved({"other.npz": "9f"})
-    history.undo()
+    history.move("undo")
     assert history.place is first
     assert (history.is_changed, history.saved.files, history.left_unsaved) == (True, {}, ())
     history.mark_saved({"first.npz": "77"})
-    history.redo()
+    history.move("redo")
     assert (history.saved.files, history.left_unsaved) == ({"other.npz": "9f"}, ())
 
 
@@ -56,9 +60,9 @@ def test_what_is_nothing_to_undo_leaves_a_drag_one_step() -> None:
     history.mark_saved({})
     history.take(SCENES[2], same_step=True)
     assert history.to_undo == (SCENES[0],)
-    history.show("A")
+    history.go(history.shown("A"), Show("A"))
     assert history.scene is SCENES[1]
-    history.undo()
+    history.move("undo")
     assert history.scene is SCENES[2]
 
 

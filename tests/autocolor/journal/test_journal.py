@@ -17,7 +17,7 @@ import autocolor
 from autocolor import InputError, MissingInputError, Studio, View, read_journal, read_scene
 from autocolor.journal import journal
 from autocolor.journal.autosave import JOURNAL, Autosave
-from autocolor.journal.history import History
+from autocolor.journal.history import History, Show
 from autocolor.journal.journal import first_line
 from autocolor.journal.places import NO_STAMP, Source, checksum_of, opened, place_of
 from ramtek_emu import Ramtek9300
@@ -62,8 +62,11 @@ def walked(history: History) -> list[tuple[object, ...]]:
     """What is known of a session at each step back to its beginning."""
     found = [summary(history)]
     while history.to_undo:
-        history.undo()
+        history.move("undo")
         found.append(summary(history))
+        while history.timeline.views_back:
+            history.move("view_back")
+            found.append(summary(history))
     return found
 
 
@@ -93,8 +96,8 @@ def test_a_journal_that_is_cut_anywhere_gives_the_session_up_to_a_step(tmp_path:
         lambda: history.take(history.scene.replace(ambient=0.5)),
         lambda: history.take(history.scene.replace(ambient=0.75), same_step=True),
         lambda: history.keep("A"),
-        history.undo,
-        history.redo,
+        lambda: history.move("undo"),
+        lambda: history.move("redo"),
         lambda: history.mark_saved({"/a\udcff.npz": "9f"}),
     ]
     for step in steps:
@@ -123,10 +126,10 @@ def test_lines_are_steps_in_json(tmp_path: Path, box: Source, begin: dict[str, o
     history.take(history.scene.with_view(angle=3))
     history.take(history.scene.with_view(angle=5), same_step=True)
     history.keep("it's")
-    history.show("it's")
+    history.go(history.shown("it's"), Show("it's"))
     history.drop("it's")
     history.mark_saved({"/box\udcff.npz": "9f"})
-    history.undo()
+    history.move("undo")
     path = journal_of(history, tmp_path)
     lines = path.read_text("ascii").splitlines(keepends=True)
     assert json.loads(lines[0]) == begin
@@ -137,7 +140,7 @@ def test_lines_are_steps_in_json(tmp_path: Path, box: Source, begin: dict[str, o
         '{"step": "show", "name": "it\'s"}',
         '{"step": "drop", "name": "it\'s"}',
         '{"step": "saved", "files": {"/box\\udcff.npz": "9f"}}',
-        '{"step": "undo"}',
+        '{"step": "undo", "steps": 1}',
     ]
     assert summary(read_journal(path).history) == summary(history)
 
@@ -227,7 +230,7 @@ REFUSED_LINES: dict[str, object] = {
     "a kind that is no text": {"step": ["edit"]},
     "no kind": {},
     "no object": 3,
-    "another field": {"step": "undo", "count": 2},
+    "another field": {"step": "undo", "steps": 1, "count": 2},
     "a missing field": {"step": "keep"},
     "another type": {"step": "keep", "name": 5},
     "a method that is no change": {**EDIT, "change": "__class__"},
@@ -242,7 +245,7 @@ REFUSED_LINES: dict[str, object] = {
         "step": "open", **Source("a")._asdict(), "scale": True, "tables": {}, "checksum": "",
     },
     "files that are no stamps": {"step": "saved", "files": {"/car.npz": 5}},
-    "half an object": b'{"step": "undo"',
+    "half an object": b'{"step": "undo", "steps": 1',
     "an empty line": b"",
     "no UTF-8": b'{"step": "keep", "name": "\xff"}',
     "deep": b'{"step":' * 100_000,
@@ -270,8 +273,9 @@ def test_any_bytes_are_read_or_refused(
 @pytest.mark.parametrize(
     ("line", "problem"),
     [
-        ({"step": "undo"}, "there must be a step to undo, and there is none; remove the line"),
-        ({"step": "redo"}, "there must be a step to redo, and there is none; remove the line"),
+        ({"step": "undo", "steps": 1}, "there must be a step to undo, and there is none; remove the line"),
+        ({"step": "redo", "steps": 1}, "there must be a step to redo, and there is none; remove the line"),
+        ({"step": "redo", "steps": 0}, "there must be a step to redo, and there is none; remove the line"),
         ({"step": "show", "name": "A"}, "there is no variant 'A'"),
         (edit("with_surface", "aa"), "there is no surface 'aa'; did you mean 'a'?"),
         (edit("replace", mesh="x"), "mesh must be a Mesh, not 'x'"),
@@ -316,7 +320,7 @@ NO_JOURNAL = f"{JOURNAL}: a journal must begin as autocolor writes it; choose an
     [
         (b"", NO_JOURNAL),
         (b"\xff\xfe\n", NO_JOURNAL),
-        (b'{"step": "undo"}', NO_JOURNAL),
+        (b'{"step": "undo", "steps": 1}', NO_JOURNAL),
         (
             b'"""A session of autocolor: run it with Python."""\nimport autocolor\n',
             f"{JOURNAL}: it is the script of a session, not a journal; run it with Python",
@@ -330,9 +334,88 @@ def test_another_file_is_no_journal(tmp_path: Path, data: bytes, problem: str) -
 
 
 def test_a_journal_begins_once_and_is_of_this_version(tmp_path: Path, begin: dict[str, object]) -> None:
-    assert refusal(tmp_path, {**begin, "version": 2}).startswith(f"{JOURNAL}, line 1: {UNKNOWN}")
+    assert refusal(tmp_path, {**begin, "version": 3}).startswith(f"{JOURNAL}, line 1: {UNKNOWN}")
     once = f"{JOURNAL}, line 2: a journal must begin once; remove the line"
     assert refusal(tmp_path, begin, begin) == once
+
+
+SEEN_IN_VERSION_1 = [
+    *[(0.13, 0, 0.88), (0.13, 0, 0.25), (0.13, 10, 0.25), (0.13, 10, 0.25), (0.5, 10, 0.25)],
+    *[(0.13, 10, 0.25), (0.13, 0, 0.25), (0.13, 20, 0.25), (0.13, 0, 0.25), (0.13, 20, 0.25)],
+    *[(0.13, 10, 0.25), (0.13, 10, 0.25), (0.13, 20, 0.25), (0.13, 10, 0.25), (0.13, 30, 0.25)],
+    *[(0.75, 30, 0.25), (0.13, 30, 0.25), (0.13, 10, 0.25)],
+]
+"""The ambient light, the angle and the blend that version 1 showed after each line of its journal."""
+
+
+def test_a_journal_of_version_1_shows_what_version_1_showed(tmp_path: Path, box: Source) -> None:
+    text = Path(__file__).with_name("version_1.jsonl").read_text("ascii")
+    *lines, _ = text.replace("/home/ann/box.obj", box.path).split("\n")
+    path = tmp_path / JOURNAL
+    seen = []
+    for count in range(1, len(lines) + 1):
+        # The program may have been killed after each line, and during the next.
+        path.write_text("\n".join([*lines[:count], "".join(lines[count : count + 1])[:-1]]), "ascii")
+        history = read_journal(path).history
+        scene = history.scene
+        seen.append((scene.ambient, scene.view.angle, scene.surfaces[0].paint.blend))
+    assert seen == SEEN_IN_VERSION_1
+    # Views are no steps any more: the paint and the variant are left to undo, the ambient light to redo.
+    assert [len(history.to_undo), len(history.to_redo)] == [2, 1]
+    assert history.unsaved_variants == ()
+    again = read_journal(journal_of(history, tmp_path / "again", box)).history
+    assert walked(again) == walked(history)
+
+
+earlier_moves = st.lists(
+    st.tuples(st.just("edit"), st.booleans(), st.tuples(st.integers(0, 2), st.integers(0, 2)))
+    | st.tuples(st.sampled_from(["undo", "redo", "open", "keep", "show"]), st.none(), st.none()),
+    max_size=12,
+)
+
+
+@given(earlier_moves)
+def test_any_journal_of_version_1_ends_as_version_1_did(
+    tmp_path_factory: pytest.TempPathFactory,
+    box: Source,
+    begin: dict[str, object],
+    taken: list[tuple[str, Any, Any]],
+) -> None:
+    # The twin is version 1: two stacks of pairs, the ambient light and the angle.
+    present: tuple[float, int] = (1, 0)
+    undone: list[Any] = [None]
+    redone: list[Any] = []
+    kept: dict[str, Any] = {}
+    later = {name: inner for name, inner in begin.items() if name != "version"} | {"step": "open"}
+    lines: list[object] = [{**begin, "version": 1}, edit("replace", ambient=0.25, view={"angle": 0})]
+    for kind, same_step, values in taken:
+        name = f"{len(kept) - (kind == 'show')}"
+        if kind == "edit" and values != present:
+            joins = same_step and not redone
+            record = edit("replace", ambient=values[0] / 4, view={"angle": values[1]})
+            lines.append({**record, "joins": joins})
+            if not joins:
+                undone.append(present)
+                redone.clear()
+            present = values
+        elif kind in ("undo", "redo"):
+            there, here = (undone, redone) if kind == "undo" else (redone, undone)
+            if there and there[-1] is not None:
+                lines.append({"step": kind})
+                here.append(present)
+                present = there.pop()
+        elif kind == "keep":
+            lines.append({"step": "keep", "name": name})
+            kept[name] = present
+        elif kind == "open" or (kind == "show" and kept and kept[name] != present):
+            lines.append(later if kind == "open" else {"step": "show", "name": name})
+            undone.append(present)
+            redone.clear()
+            present = (0.52, 0) if kind == "open" else kept[name]
+    path = tmp_path_factory.mktemp("earlier") / JOURNAL
+    path.write_text("".join(f"{json.dumps(line)}\n" for line in lines), "ascii")
+    scene = read_journal(path).history.scene
+    assert (scene.ambient, scene.view.angle) == (present[0] / 4, present[1])
 
 
 def test_long_lines_and_many_lines_are_refused(

@@ -77,15 +77,14 @@ class Hand:
         self.drop()
 
     def press(self, *keys: str, repeated: bool = False) -> bool:
-        """Press keys, such as `Ctrl+Z`, and return whether the last one does anything."""
+        """Press keys, such as `Ctrl+Z` or `Alt+Left`, and return whether the last one does anything."""
         taken = False
         for key in keys:
-            name = key.removeprefix("Ctrl+").removeprefix("Shift+")
-            control, shift = key.startswith("Ctrl+"), "Shift+" in key
-            typed = name if len(name) == 1 and not control else ""
-            taken = self.viewer.on_key(
-                name.lower(), control, shift, typed.upper() if shift else typed.lower(), repeated
-            )
+            *modifiers, name = key.split("+") if len(key) > 1 else [key]
+            control, shift, alt = (modifier in modifiers for modifier in ("Ctrl", "Shift", "Alt"))
+            typed = name if len(name) == 1 and not control and not alt else ""
+            typed = typed.upper() if shift else typed.lower()
+            taken = self.viewer.on_key(name.lower(), control, shift, typed, repeated, alt)
         return taken
 
     def type(self, text: str) -> None:

@@ -14,6 +14,7 @@ from autocolor.journal.places import Source, place_of
 from autocolor.scene.lights import Links
 from autocolor.screens.comparing import BEFORE, NOW
 from autocolor.screens.file_actions import SECONDS_BETWEEN, ask_to_leave, open_file, save
+from autocolor.screens.keys import toggle
 from autocolor.screens.session import LEAST_SECONDS, MESSAGE_SECONDS
 from autocolor.screens.steps import undo
 from autocolor.screens.viewer import Viewer
@@ -229,10 +230,47 @@ def test_without_a_step_there_is_nothing_to_compare_with(tmp_path: Path) -> None
     )
 
 
-def test_over_a_screen_without_the_picture_the_picture_comes(hand: Hand) -> None:
-    hand.press("f1", "b")
+@pytest.mark.parametrize("screen", ["help", "entries", "mapping"])
+def test_over_a_screen_without_the_picture_the_picture_comes_and_then_the_screen_again(
+    hand: Hand, screen: str
+) -> None:
+    toggle(hand.viewer, screen)
+    for _ in range(2):
+        hand.press("b")
+        assert hand.viewer.page == "picture"
+        assert shown(hand) == ball_alone()
+        release(hand)
+        assert hand.viewer.page == screen
+        assert hand.message == f"shown: {NOW}"
+    # The screen that the user turns to meanwhile stays, and a later release leads nowhere.
+    hand.press("b", "f4" if screen != "entries" else "f1")
+    page = hand.viewer.page
+    release(hand)
+    assert hand.viewer.page == page
+    hand.press("escape")
+    release(hand)
     assert hand.viewer.page == "picture"
-    assert shown(hand) == ball_alone()
+
+
+def test_the_state_before_is_shown_in_the_present_view(hand: Hand) -> None:
+    hand.drag((60, 60), (90, 60))
+    view = hand.scene.view
+    assert view != ball().view
+    before = alone(ball().replace(view=view))
+    hand.press("b")
+    assert shown(hand) == before
+    release(hand)
+    hand.press("Ctrl+Z")
+    assert shown(hand) == before
+    hand.press("Left", "Ctrl+Y")
+    assert hand.scene.view != view
+    hand.press("Alt+Left", "Alt+Left")
+    assert hand.scene.view == ball().view
+    hand.press("Alt+Left")
+    assert hand.message == "there is no view before this one"
+    hand.press("Alt+Right")
+    assert hand.scene.view == view
+    assert "undo 1, to redo 0" in repr(hand.viewer.studio)
 
 
 def test_a_variant_is_compared_until_comparing_ends_or_it_is_dropped(hand: Hand) -> None:

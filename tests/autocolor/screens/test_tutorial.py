@@ -80,6 +80,11 @@ def turn(hand: Hand) -> None:
     hand.steps = 0
 
 
+def recolor(hand: Hand) -> None:
+    """Give the body another color before the task begins."""
+    hand.press("c")
+
+
 def key(hand: Hand) -> Light:
     return hand.scene.lights["key"]
 
@@ -152,19 +157,19 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
         ),
     ),
     "save": ([turn, menu("file"), pick("save")], lambda hand: "*" not in hand.viewer.caption),
-    "undo": ([turn, menu(" ", 0.1)], lambda hand: hand.scene is coupe()),
+    "undo": ([recolor, menu(" ", 0.1)], lambda hand: hand.scene is coupe()),
     "go back several steps": (
-        [turn, turn, turn, menu(" ", 0.5), pick("step 0")],
+        [recolor, recolor, recolor, menu(" ", 0.5), pick("step 0")],
         lambda hand: hand.scene is coupe(),
     ),
-    "compare": ([turn, menu("compare"), pick("compare")], lambda hand: hand.message == f"shown: {NOW}"),
+    "compare": ([recolor, menu("compare"), pick("compare")], lambda hand: hand.message == f"shown: {NOW}"),
     "see what an edit sent": ([turn, menu("what was sent")], lambda hand: hand.viewer.page == "sent"),
     "explain a pixel": (
         [menu("explain a pixel"), lambda hand: hand.click(200, 240)],
         lambda hand: hand.viewer.page == "explain",
     ),
     "compare side by side": (
-        [turn, menu("compare", 0.75), drag((320, 200), (200, 200))],
+        [recolor, menu("compare", 0.75), drag((320, 200), (200, 200))],
         is_split_elsewhere,
     ),
 }

@@ -60,7 +60,7 @@ def test_every_key_says_what_it_does_in_words_of_its_own_and_is_taken(hand: Hand
     assert {keys for keys, _ in WINDOW_KEYS} >= {"F10", "Ctrl+Q"}
     for chord in chords:
         hand.go_to("help" if chord.name == "escape" else "picture")
-        assert hand.viewer.on_key(chord.name, chord.control, chord.shift)
+        assert hand.viewer.on_key(chord.name, chord.control, chord.shift, alt=chord.alt)
 
 
 @pytest.mark.parametrize("key", ["q", "Ctrl+Shift+s", "Ctrl+f1", "escape"])
