@@ -194,6 +194,8 @@ class Board:
         """Take a name from the list; a list whose name is refused stays open."""
         if name != choice.present:
             choice.choose(name)
+        elif choice.rename is not None:
+            choice.rename(name)
         self._close_opened()
 
     def _close_opened(self) -> None:

@@ -22,6 +22,7 @@ from autocolor.scene.view import View
 from autocolor.screens.file_actions import save_rig
 from autocolor.screens.input import Gesture
 from autocolor.screens.light_parameters import KIND, all_lights_on, light_alone, parameter_rows, solo_light
+from autocolor.screens.naming import name_light
 from autocolor.screens.picture.light_handles import LightHandles, highlight_items
 from autocolor.screens.picture.over_picture import OverPicture, exposure_row
 from autocolor.screens.screen import Handle
@@ -190,6 +191,7 @@ class LightsScreen(OverPicture):
         self.session.edit(scene.replace(lights=(*scene.lights, light)))
         self.session.choose_light(light.name)
         self.session.tell(f"light added: {light.name}")
+        name_light(self.session, light.name, is_new=True)
 
     def _copy(self) -> None:
         self._append(self.session.scene.with_copied_light(self.session.light_name).lights, "copied")
@@ -206,6 +208,7 @@ class LightsScreen(OverPicture):
         self.session.edit(self.session.scene.replace(lights=lights))
         self.session.choose_light(lights[-1].name)
         self.session.tell(f"{titled('light', before)} {done}: {lights[-1].name}")
+        name_light(self.session, lights[-1].name, is_new=True)
 
     def _remove(self) -> None:
         name = self.session.light_name
@@ -281,7 +284,7 @@ class LightList:
         assert bar is not None
         return LightRow(
             name,
-            f"{name}: name: choose it; box: on, off; bar: intensity; {SOLO}: alone, again: as before",
+            f"{name}: name: choose, again: rename; box: on, off; bar: intensity; {SOLO}: alone, and back",
             within="light list",
             value=light.intensity,
             **bar._asdict(),
@@ -290,10 +293,15 @@ class LightList:
             is_on=light.on,
             is_chosen=name == session.light_name,
             is_solo=name == solo_light(session),
-            choose=partial(session.choose_light, name),
+            choose=partial(self._choose, name),
             switch=lambda: session.edit(session.scene.with_light(name, on=not light.on)),
             solo=partial(light_alone, session, name),
         )
+
+    def _choose(self, name: str) -> None:
+        if name == self._session.light_name:
+            name_light(self._session, name)
+        self._session.choose_light(name)
 
     @property
     def _shown_page(self) -> int:

@@ -25,6 +25,7 @@ from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import Comparing
 from autocolor.studio import Studio
 from autocolor.widgets.rows import TableNames, World
+from autocolor.widgets.widget import Entry
 from ramtek_emu import HostPort
 from ramtek_emu.errors import escaped
 
@@ -145,6 +146,8 @@ class Session:
     """Whether the user asked to leave the program."""
     refused_to_leave: Scene | None = None
     """The scene that the user was last warned about when leaving would have discarded its changes."""
+    naming: Entry | None = None
+    """A name to ask for, after the action that sets it; see `naming`."""
     keys: Sequence[tuple[str, str]] = ()
     """Each key and what it does, for the help page."""
 

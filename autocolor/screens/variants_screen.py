@@ -20,6 +20,7 @@ from autocolor.mapping.ranges import BACKGROUND, SCREENS
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 from autocolor.screens.comparing import BEFORE, NamedScene
+from autocolor.screens.naming import name_variant
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.steps import compare
@@ -221,6 +222,7 @@ class VariantsScreen(Screen):
 
     def _keep(self) -> None:
         self._keep_as(None)
+        name_variant(self.session, self._chosen)
 
     def _keep_as(self, name: str | None) -> None:
         name = self.session.studio.keep_variant(name)

@@ -315,6 +315,9 @@ class Viewer:
         self._watching.end()
         taken = self._action.do(source, run, continues, moving)
         self.board.forget()
+        naming, self.session.naming = self.session.naming, None
+        if naming is not None and self.session.has_keyboard:
+            self.board.typing.begin(naming)
         if self._action.costs > Tier.ENTRIES and not self.board.screen.shows_scene:
             self.session.turn_to(PICTURE)
         return taken

@@ -281,6 +281,8 @@ class Choice(Widget):
     choose: Callable[[str], object] = lambda _: None
     turns_pages: bool = False
     """Whether the names are pages, which are turned one after the other."""
+    rename: Callable[[str], object] | None = None
+    """Called with the present name if it is picked from the list."""
 
     @property
     def has_list(self) -> bool:

@@ -23,6 +23,7 @@ from autocolor.scene.scene import AUTO
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
+from autocolor.screens.naming import name_view
 from autocolor.screens.picture.picture_edits import ALL_HELD, PictureEdits
 from autocolor.screens.screen import Sample, Screen
 from autocolor.screens.session import EXPLAIN, Session
@@ -267,10 +268,11 @@ def camera_rows(edits: PictureEdits) -> list[Widget]:
     return [
         Choice(
             "camera",
-            "Look through a saved view.",
+            "Look through a saved view; a click on its name in the list renames it.",
             names=tuple(row.name for row in views),
             present=edits.camera,
             choose=edits.take_view,
+            rename=partial(name_view, edits.session),
         ),
         Pair(
             "save view",

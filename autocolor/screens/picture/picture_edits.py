@@ -17,6 +17,7 @@ from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
+from autocolor.screens.naming import name_view
 from autocolor.screens.session import Session
 from autocolor.screens.surface.painting import change_paint
 from autocolor.visibility.projection import focal_length
@@ -268,6 +269,7 @@ class PictureEdits:
         scene = self.session.scene.with_saved_view()
         self.session.edit(scene)
         self.session.tell(f"view saved: {scene.views[-1].name}")
+        name_view(self.session, scene.views[-1].name, is_new=True)
 
     def remove_view(self) -> None:
         """Remove the named view that equals the present view. Raises UsageError if there is none."""
