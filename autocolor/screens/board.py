@@ -538,7 +538,7 @@ class Board:
     def page(self) -> Page:
         """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
         screen = self.screen
-        screen.lit = self._lit
+        screen.lit, screen.pointer = self._lit, self._pointer
         layout, lit = self.layout, self._lit_widget()
         items = list(screen.items())
         for widget in (*layout.beside, *reversed(layout.over)):
@@ -573,7 +573,7 @@ class Board:
 
     @property
     def _has_hint(self) -> bool:
-        """Whether a hint is in the message line: always beside a menu, else at the handles of a picture."""
+        """Whether a hint is in the message line: beside a menu, else at handles and surfaces of a picture."""
         if self.layout.rows:
             return True
         element, line = self._pointer
@@ -584,8 +584,10 @@ class Board:
         ):
             return False
         handle = self.held or self.handle_at(element, line)
-        # A hint would cover a handle at the foot of the picture.
-        return handle is not None and handle.line < MESSAGE.top
+        if handle is not None:
+            # A hint would cover a handle at the foot of the picture.
+            return handle.line < MESSAGE.top
+        return self.screen.shows_picture and self.screen.sample(element, line) is not None
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer

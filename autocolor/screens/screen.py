@@ -15,7 +15,7 @@ from autocolor.errors import UsageError
 from autocolor.screens.input import Gesture
 from autocolor.screens.session import Session
 from autocolor.widgets.items import NIGHT, Area, Item
-from autocolor.widgets.widget import NOWHERE, Widget
+from autocolor.widgets.widget import NOWHERE, Place, Widget
 
 
 class Handle(NamedTuple):
@@ -67,6 +67,8 @@ class Screen:
         """Whether its panels are shown; else the user hides them to see the whole picture."""
         self.lit = ""
         """The key of the widget under the pointer; empty if there is none."""
+        self.pointer = Place(-1, -1)
+        """The place of the pointer when the page was shown last."""
 
     # How it looks.
 

@@ -189,10 +189,14 @@ class Pointed(NamedTuple):
     read: str
 
     @property
+    def names(self) -> list[str]:
+        """The names of the part and the surface, or the one name of both."""
+        return list(dict.fromkeys(filter(None, (self.part, self.surface))))
+
+    @property
     def message(self) -> str:
         """The text for the message line."""
-        names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
-        return f"{names}, {self.read}"
+        return f"{' - '.join(self.names)}, {self.read}"
 
 
 def legend_items(legend: Legend | None) -> Sequence[Item]:

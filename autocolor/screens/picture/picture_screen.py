@@ -15,7 +15,7 @@ from autocolor.screens.picture.over_picture import OverPicture, camera_rows, sur
 from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, SENT, Session
-from autocolor.widgets.items import SCREEN
+from autocolor.widgets.items import SCREEN, Item
 from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import Button, Choice, Pair, Steps, Switch, Widget, titled
 
@@ -38,6 +38,25 @@ class PictureScreen(OverPicture):
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self._handles = LightHandles(session, SCREEN, has_rims=False)
+        self._has_marks = False
+        """Whether the highlights are marked: the pointer rests on the object."""
+
+    def items(self) -> Sequence[Item]:
+        marks = self._handles.items(numbered=True) if self._has_marks else ()
+        return [*super().items(), *marks]
+
+    def hint(self, element: int, line: int) -> str:
+        pointed = self._pointed(element, line)
+        if pointed is None:
+            return super().hint(element, line)
+        does = "click explains" if self.session.explains else "drag turns, click chooses, Shift explains"
+        return f"{', '.join(pointed.names)}: {does}"
+
+    def idle(self) -> bool:
+        had_marks = self._has_marks
+        is_on_object = min(self.pointer) >= 0 and self._pointed(*self.pointer) is not None
+        self._has_marks = is_on_object and not self.session.explains
+        return self._has_marks != had_marks
 
     def handles(self) -> Sequence[Handle]:
         # A click that explains a pixel picks no handle.
@@ -134,7 +153,7 @@ class PictureScreen(OverPicture):
         return explains
 
     def leave(self) -> None:
-        self.session.explains = False
+        self.session.explains = self._has_marks = False
 
     def _up_rows(self) -> list[Widget]:
         """The row of a mesh that seems to lie on its side."""
