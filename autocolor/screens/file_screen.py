@@ -43,7 +43,6 @@ from autocolor.sending import configuration_of
 from autocolor.widgets.items import (
     CHARACTER,
     CHARACTER_LINES,
-    GRAY,
     LIGHT_GRAY,
     NIGHT,
     SLATE,
@@ -185,9 +184,11 @@ class FileScreen(Screen):
             filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
         ]
         if not self._files:
-            items.append(text("no scene, mesh or picture", left, down + ROW_LINES * self._has_way_up, GRAY))
+            items.append(
+                text("no scene, mesh or picture", left, down + ROW_LINES * self._has_way_up, LIGHT_GRAY)
+            )
         if not self._recent:
-            items.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, GRAY))
+            items.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, LIGHT_GRAY))
         if (shown := self._shown_thumbnail) is not None:
             caption, small = shown
             lines, elements = small.full.shape[:2]
@@ -473,5 +474,5 @@ class FileRow(Button):
         end = right + 1 - MARGIN - CHARACTER * (LONGEST_KIND + 1)
         start = end - CHARACTER * len(self.date)
         if self.date and left + MARGIN + CHARACTER * (len(self.shown) + 1) <= end - CHARACTER * LONGEST_DATE:
-            items.append(text(self.date, start, top + TEXT_DOWN, GRAY, SLATE if lit else NIGHT))
+            items.append(text(self.date, start, top + TEXT_DOWN, LIGHT_GRAY, SLATE if lit else NIGHT))
         return items

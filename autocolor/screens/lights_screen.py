@@ -356,7 +356,7 @@ class LightRow(Bar):
 
     def items(self, lit: bool) -> list[Item]:
         left, top, *_ = self.area
-        ground, ink = SLATE if lit else NIGHT, WHITE if self.is_on else GRAY
+        ground, ink = SLATE if lit else NIGHT, WHITE if self.is_on else LIGHT_GRAY
         named = self.area._replace(right=self._name_end - 1)
         name_ground, name_ink = (WHITE, BLACK) if self.is_chosen else (ground, ink)
         name = f"{self.numeral:2} {short_name(self.label, NAME_CHARACTERS)}"

@@ -32,7 +32,6 @@ from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.items import (
     CHARACTER,
-    GRAY,
     LIGHT_GRAY,
     NIGHT,
     SLATE,
@@ -290,7 +289,7 @@ def panel_items(curve: Curve) -> list[Item]:
         outline(CURVE, SLATE),
         lines([_places_of(ACROSS, curve.levels)], YELLOW, CURVE),
     ]
-    items.append(text(title, CURVE.right + 1 - CHARACTER * len(title), top, GRAY))
+    items.append(text(title, CURVE.right + 1 - CHARACTER * len(title), top, LIGHT_GRAY))
     for number, (x, y) in enumerate(curve.points):
         element, line = place_of(x, y)
         word = YELLOW if number == curve.touched else WHITE

@@ -19,7 +19,7 @@ from autocolor.screens.comparing import MOST_DESCRIBED
 from autocolor.screens.screen import Pages, page_of
 from autocolor.screens.session import SENT, LastEdit, Session
 from autocolor.sending import configuration_of
-from autocolor.widgets.items import CHARACTER, GRAY, LIGHT_GRAY, WHITE, WIDTH, YELLOW, Item, text
+from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, WHITE, WIDTH, YELLOW, Item, text
 from ramtek_emu import Configuration, EntryFormat
 from ramtek_emu.instruction_set.disassembler import ListingItem, items
 
@@ -148,4 +148,4 @@ def _listing(item: ListingItem) -> Iterator[ListingRow]:
     if following is not None:
         place = int(following.partition(":")[0], 16)
         left_out = item.place + len(item.words) - place
-        yield ListingRow(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", GRAY)
+        yield ListingRow(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", LIGHT_GRAY)

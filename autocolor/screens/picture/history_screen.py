@@ -18,7 +18,7 @@ from autocolor.screens.comparing import MOST_DESCRIBED
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.session import HISTORY, Session
 from autocolor.screens.steps import redo, undo
-from autocolor.widgets.items import CHARACTER, GRAY, Area, Item, fitted
+from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, Area, Item, fitted
 from autocolor.widgets.widget import MARGIN, ROW_LINES, Button, Gap, Pair, Widget
 
 LEFT: Final = 8
@@ -150,7 +150,7 @@ class StepRow(Button):
 
     @property
     def ink(self) -> int:
-        return GRAY if self.is_undone else super().ink
+        return LIGHT_GRAY if self.is_undone else super().ink
 
     def items(self, lit: bool) -> list[Item]:
         return self.row(lit, fitted(self.shown, self.characters), chosen=self.is_chosen)
