@@ -127,9 +127,6 @@ class SocketPort:
         self.socket = prepared(connected)
         self._received = bytearray()
 
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.address}, {'closed' if self._is_closed else 'open'})"
-
     @property
     def _is_closed(self) -> bool:
         return self.socket.fileno() < 0

@@ -33,9 +33,6 @@ class Stream:
         """The number of whole instructions."""
         return self._count
 
-    def __repr__(self) -> str:
-        return f"Stream({len(self)} instructions, {self._word_count} words)"
-
     @property
     def words(self) -> Words:
         """All words, uint16, with the words of an incomplete instruction at the end."""
