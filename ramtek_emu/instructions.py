@@ -50,11 +50,6 @@ def reset() -> Words:
     return encode(Instruction(FORMAT_OF_NAME["RSET"]))
 
 
-def initialize() -> Words:
-    """INIT: set every parameter as at power-on; screen and lookup table are kept."""
-    return encode(Instruction(FORMAT_OF_NAME["INIT"]))
-
-
 def set_parameters(**operands: OperandValue | None) -> Words:
     """SET: set operands by name (`foreground=3`, `window=(0, 0, 639, 479)`); they stay until set again."""
     return encode(normal("SET", operands))
