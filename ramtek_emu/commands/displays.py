@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 import click
 from click.core import ParameterSource
 
-from ramtek_emu import command_line
-from ramtek_emu.command_line import ENDING, SIGNALS
+from ramtek_emu.command_line import ENDING, SIGNALS, report
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration
 from ramtek_emu.errors import MissingInputError, RamtekError, WordsError, reason_of
 from ramtek_emu.writing import PNG, Output, check_suffix, refuse_output, same_outputs
@@ -157,7 +156,7 @@ class Run:
             hints["foreign"] = f"a 9300 does not take {foreign}, but the display FAMILY does"
         self.hints |= hints.keys()
         for hint in hints.values():
-            tell(hint)
+            report(hint)
         return "; ".join(hints.values())
 
     def hint_at_rest(self, display: Ramtek9300, seconds: float) -> str:
@@ -202,7 +201,7 @@ class Run:
 
     def fail(self, failure: RamtekError) -> None:
         """Report a failure; the command ends with the exit code of the first."""
-        tell(f"ramtek: {failure}")
+        report(f"ramtek: {failure}")
         self.exit_code = self.exit_code or failure.exit_code
 
 
@@ -231,7 +230,7 @@ def running(
             def record_words(data: bytes) -> None:
                 nonlocal record
                 if record is not None and not run.attempt(lambda: recording.write(data)):
-                    tell("the display goes on without its recording")
+                    report("the display goes on without its recording")
                     record = None
                     opened.close()
 
@@ -239,14 +238,14 @@ def running(
         yield run
         run.hint(display)
         if record is not None and run.attempt(recording.keep):
-            tell(f"wrote {record}")
+            report(f"wrote {record}")
         if output is not None and run.attempt(lambda: display.save_png(output, overwrite=force)):
-            tell(f"wrote {output}")
+            report(f"wrote {output}")
         if snapshot is not None:
             from ramtek_emu.snapshot import write_snapshot
 
             if run.attempt(lambda: write_snapshot(display, snapshot, overwrite=force)):
-                tell(f"wrote {snapshot}")
+                report(f"wrote {snapshot}")
         # A signal that was noticed must not end the command a second time.
         SIGNALS.ignored = run.ends
     if run.exit_code:
@@ -302,9 +301,6 @@ def unreadable(cause: OSError) -> MissingInputError:
     )
 
 
-tell: Final = command_line.report
-"""Prints a message on stderr; stdout is for results."""
-
 TICK_SECONDS: Final = 0.01
 """How long a host is served before the window is handled again."""
 
@@ -341,9 +337,9 @@ def tell_the_end(session: HostSession, run: Run) -> None:
     """
     processor = session.display.processor
     if illegal := processor.illegal_words:
-        tell(f"words that begin no instruction, skipped: {illegal}")
+        report(f"words that begin no instruction, skipped: {illegal}")
     if unknown := processor.unimplemented:
-        tell(f"instructions known by name only, without effect: {unknown}")
+        report(f"instructions known by name only, without effect: {unknown}")
     tell_unexecuted(session)
     if not run.ends:
         tell_incomplete("the stream", session.display.decoder.pending_words, session.odd_byte != b"")
@@ -352,13 +348,13 @@ def tell_the_end(session: HostSession, run: Run) -> None:
 def tell_unexecuted(session: HostSession) -> None:
     """Report that the display has ended within the words of a host."""
     if session.unexecuted:
-        tell("the display ended before it had executed all words of the host")
+        report("the display ended before it had executed all words of the host")
 
 
 def tell_incomplete(stream: str, words: int, has_odd_byte: bool) -> None:
     """Report the words of an instruction, and the byte, that begin at the end of a stream."""
     if words:
         dropped = "word was" if words == 1 else f"{words} words were"
-        tell(f"{stream} ends within an instruction: its {dropped} dropped")
+        report(f"{stream} ends within an instruction: its {dropped} dropped")
     if has_odd_byte:
-        tell(f"{stream} ends within a word: its last byte was dropped")
+        report(f"{stream} ends within a word: its last byte was dropped")

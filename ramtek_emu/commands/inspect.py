@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from ramtek_emu.command_line import report
 from ramtek_emu.commands.displays import (
     Run,
     configuration_option,
@@ -17,7 +18,6 @@ from ramtek_emu.commands.displays import (
     refuse_outputs,
     start_option,
     table_option,
-    tell,
 )
 from ramtek_emu.writing import write_atomically
 
@@ -136,18 +136,18 @@ def inspect(
     if numbers is not None and output is not None:
         words = replay.stream.words_between(numbers[0] - 1, numbers[1])
         write_atomically(Path(output), words.astype("<u2").tobytes(), overwrite=force)
-        tell(f"wrote {output}")
+        report(f"wrote {output}")
     elif output is not None:
         replay.go_to(number)
         run.hint(replay.display)
         replay.display.save_png(output, overwrite=force)
-        tell(f"wrote {output}")
+        report(f"wrote {output}")
     if snapshot is not None:
         from ramtek_emu.snapshot import write_snapshot
 
         replay.go_to(number)
         write_snapshot(replay.display, snapshot, overwrite=force)
-        tell(f"wrote {snapshot}")
+        report(f"wrote {snapshot}")
     if who is not None:
         answer(replay, who, number, as_json)
     elif as_json:
@@ -189,7 +189,7 @@ def answer(replay: Replay, pixel: tuple[int, int], until: int, as_json: bool) ->
         listed = next(replay.stream.item(write.number).lines())
         click.echo(f"{write.number:>8}  {write.before:04X} -> {write.after:04X}  {listed}")
     if not writes:
-        tell(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")
+        report(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")
 
 
 def plain_moment(replay: Replay) -> dict[str, Any]:

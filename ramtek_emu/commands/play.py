@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from ramtek_emu.command_line import Ended
+from ramtek_emu.command_line import Ended, report
 from ramtek_emu.commands.displays import (
     Run,
     display_asked_for,
@@ -19,7 +19,6 @@ from ramtek_emu.commands.displays import (
     refuse_outputs,
     running,
     show,
-    tell,
     tell_the_end,
     unreadable,
 )
@@ -149,6 +148,6 @@ def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loo
     from ramtek_emu.films import write_film
 
     if run.attempt(lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)):
-        tell(f"wrote {path}")
+        report(f"wrote {path}")
     for _ in fields:
         pass

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from ramtek_emu.command_line import report
 from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
@@ -19,7 +20,6 @@ from ramtek_emu.commands.displays import (
     refuse_outputs,
     running,
     show,
-    tell,
     tell_the_end,
     tell_unexecuted,
 )
@@ -117,7 +117,7 @@ def serve(
     from ramtek_emu.host.server import TcpServer, UnixServer
 
     with running(display, output, snapshot, record, force) as run:
-        lines = None if joystick is None else JoystickLines(joystick, tell)
+        lines = None if joystick is None else JoystickLines(joystick, report)
         server: TcpServer | UnixServer | PipeServer
         if unix is not None:
             server = UnixServer(display, unix, idle_seconds=idle, record=run.record)
@@ -204,7 +204,7 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
 def announce(address: str, host: str) -> None:
     """Print the address for hosts, with a warning if other machines can reach it."""
     if host not in ("127.0.0.1", "localhost", "::1"):
-        tell(
+        report(
             f"warning: whoever reaches {address} can draw on this display and read it back; "
             "leave --host out to keep to this machine"
         )
