@@ -432,6 +432,9 @@ class UnixServer(Server):
 def listen_at(listener: socket.socket, path: str) -> os.stat_result:
     """Listen at a path, which then names the socket; returns the state of its file.
 
+    The socket of a server that is gone is removed. OutputExistsError if anything else is at the path, OSError
+    if the path is too long for a socket.
+
     The name appears when the socket listens already, so that no host that finds it is refused. Before, the
     socket has a hidden name in the same folder, which only Linux can name by its descriptor.
     """
@@ -446,7 +449,13 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
         listener.bind(hidden)
         try:
             listener.listen(HOSTS_IN_LINE)
-            remove_stale_socket(path)
+            # A running server refuses a socket of another type and is not disturbed.
+            with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
+                refusal = asking.connect_ex(path)
+            if refusal == errno.EPROTOTYPE:
+                raise taken(path, "belongs to a server that runs")
+            if refusal == errno.ECONNREFUSED and stat.S_ISSOCK(os.lstat(path).st_mode):
+                os.unlink(path)
             # Unlike a renaming, a link replaces no file that another server has made meanwhile.
             try:
                 os.link(hidden, path)
@@ -457,22 +466,6 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
             os.unlink(hidden)
     finally:
         os.close(folder)
-
-
-def remove_stale_socket(path: str) -> None:
-    """Remove the socket of a server that is gone; OutputExistsError if anything else is at the path.
-
-    OSError if the path is too long for a socket.
-    """
-    if sys.platform != "linux":
-        raise OSError("packet sockets are of Linux")
-    # A running server refuses a socket of another type and is not disturbed.
-    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
-        refusal = asking.connect_ex(path)
-    if refusal == errno.EPROTOTYPE:
-        raise taken(path, "belongs to a server that runs")
-    if refusal == errno.ECONNREFUSED and stat.S_ISSOCK(os.lstat(path).st_mode):
-        os.unlink(path)
 
 
 def taken(path: str, thing: str) -> OutputExistsError:
