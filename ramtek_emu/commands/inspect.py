@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -34,22 +35,16 @@ Examples:
 """
 
 
-class NumberPair(click.ParamType[tuple[int, int]]):
-    """Two numbers, at least 0, with a sign between them."""
+def pair(thing: str, sign: str) -> Callable[[str], tuple[int, int]]:
+    """A function that converts text to two numbers, at least 0, with a sign between them; BadParameter."""
 
-    name = "pair"
-
-    def __init__(self, thing: str, sign: str) -> None:
-        self.thing, self.sign = thing, sign
-
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        """The two numbers; UsageError if the text is something else."""
-        first, _, second = value.partition(self.sign)
+    def convert(value: str) -> tuple[int, int]:
+        first, _, second = value.partition(sign)
         if not (first + second).isdecimal() or not first or not second:
-            self.fail(f"{self.thing} must be two numbers with {self.sign} between them, not {value!r}", param)
+            raise click.BadParameter(f"{thing} must be two numbers with {sign} between them, not {value!r}")
         return int(first), int(second)
+
+    return convert
 
 
 @click.command(epilog=EXAMPLES)
@@ -69,13 +64,13 @@ class NumberPair(click.ParamType[tuple[int, int]]):
 @click.option(
     "--range",
     "numbers",
-    type=NumberPair("a range of instructions", ".."),
+    type=pair("a range of instructions", ".."),
     metavar="A..B",
     help="The instructions A to B, for -o.",
 )
 @click.option(
     "--who",
-    type=NumberPair("a pixel", ","),
+    type=pair("a pixel", ","),
     metavar="ELEMENT,LINE",
     help="List the instructions that wrote a word of the memory, the newest first.",
 )
