@@ -103,7 +103,8 @@ class Monitor:
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
-        self._glass = Glass((self.source.elements, self.source.lines), fit)
+        self.glass = Glass((self.source.elements, self.source.lines), fit)
+        """The window's pixels, its clipboard, and whether the field fills it."""
         self._shown: tuple[object, ...] | None = None
 
     @property
@@ -119,7 +120,7 @@ class Monitor:
         display.joystick.move_to(*self._display.joystick.position)
         display.scan_out.shown_table = self._display.scan_out.shown_table
         self._display = display
-        self._glass.forget_shown()
+        self.glass.forget_shown()
 
     @property
     def source(self) -> FieldSource:
@@ -127,14 +128,9 @@ class Monitor:
         return self._display.scan_out if self._source is None else self._source
 
     @property
-    def fit(self) -> bool:
-        """Whether the field fills the window instead of being a whole multiple."""
-        return self._glass.fit
-
-    @property
     def is_open(self) -> bool:
         """Whether the window is open."""
-        return self._glass.is_open
+        return self.glass.is_open
 
     @property
     def is_at_rest(self) -> bool:
@@ -154,21 +150,21 @@ class Monitor:
     def _set_title(self, message: str = "") -> None:
         """Show the caption, whether a film is recorded, and a message in the title bar."""
         recording = "recording" if self._film is not None else ""
-        self._glass.set_title(" - ".join(part for part in (self._caption, recording, message) if part))
+        self.glass.set_title(" - ".join(part for part in (self._caption, recording, message) if part))
 
     def open(self) -> None:
         """Open the window; NoScreenError if there is no screen."""
-        self._glass.open(self.full_screen)
+        self.glass.open(self.full_screen)
         self._set_title()
 
     def close(self) -> None:
         """Close the window without asking. A film is saved, and a message on stderr has its path."""
-        self._glass.close()
+        self.glass.close()
         if self._film is not None:
             report(self._end_film(self._film))
 
     def _to_be_shown(self) -> tuple[object, ...]:
-        return self.source.stamp, self._glass.stamp, self.overlay.stamp
+        return self.source.stamp, self.glass.stamp, self.overlay.stamp
 
     def show_message(self, message: str) -> None:
         """Show a message in the title bar of the window, or over the field in full screen."""
@@ -194,7 +190,7 @@ class Monitor:
         After an input that changes the field, further inputs wait until the field was shown. Returns whether
         the window is still open.
         """
-        self._glass.collect(self.input, 0 if self.input else wait)
+        self.glass.collect(self.input, 0 if self.input else wait)
         before = self._to_be_shown() if self.is_open else ()
         while self.is_open and self.input and self._to_be_shown() == before:
             self.handle(self.input.take())
@@ -214,7 +210,7 @@ class Monitor:
         hides_mouse = any(cursor.is_visible for cursor in driven)
         table = self.display.scan_out.table()
         draw_over = partial(self.overlay.draw, colors=table, title=self._caption)
-        self._glass.show(self.source, draw_over if any(self.overlay.stamp) else None, hides_mouse)
+        self.glass.show(self.source, draw_over if any(self.overlay.stamp) else None, hides_mouse)
         if self._film is not None:
             self._film.show(self.source.field(), time.monotonic())
             if self._film.is_full:
@@ -223,12 +219,12 @@ class Monitor:
     def toggle_full_screen(self) -> None:
         """Switch to full screen, or back to a window of the previous size."""
         self.full_screen = not self.full_screen
-        self._glass.set_full_screen(self.full_screen)
+        self.glass.set_full_screen(self.full_screen)
 
     def toggle_fit(self) -> None:
         """Let the field fill the window, or show it at the largest whole multiple again."""
-        self._glass.fit = not self._glass.fit
-        self.tell("the picture fills the window" if self.fit else "the picture at a whole multiple")
+        self.glass.fit = not self.glass.fit
+        self.tell("the picture fills the window" if self.glass.fit else "the picture at a whole multiple")
 
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
@@ -250,36 +246,21 @@ class Monitor:
     def _end_film(self, film: TimedFilm) -> str:
         """End and save the film under the next free number; returns a sentence with its path.
 
-        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files, or
-        else to the home folder.
+        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files.
         """
         from ramtek_emu.films import FILM
         from ramtek_emu.writing import write_numbered
 
         self._film = None
         fields, data, reason = film.fields, film.end(time.monotonic()), ""
-        # Without a folder for temporary files, or a home, asking for it raises an error.
-        folders: tuple[Callable[[], str | Path], ...] = (
-            lambda: self.screenshots,
-            tempfile.gettempdir,
-            Path.home,
-        )
-        for folder in folders:
+        for folder in (self.screenshots, None):
             try:
-                path = write_numbered(data, Path(folder()), self.file_name, FILM)
-            except (RamtekError, OSError, RuntimeError) as refusal:
+                path = write_numbered(data, folder or Path(tempfile.gettempdir()), self.file_name, FILM)
+            except OSError as refusal:
                 reason = reason or f"{refusal}; "
                 continue
             return f"{reason}saved {path}, {fields:,} {'field' if fields == 1 else 'fields'}"
         return f"{reason}the film is lost: no folder could take it"
-
-    def copy(self, text: str) -> bool:
-        """Put a text into the clipboard; returns False if the screen has none, or the window is closed."""
-        return self._glass.copy(text)
-
-    def paste(self) -> str:
-        """The text in the clipboard; empty if there is none."""
-        return self._glass.paste()
 
     def tell(self, message: str) -> None:
         """Show a message to the user; "" removes the last message."""
