@@ -19,7 +19,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection import histories, listing
+from ramtek_emu.inspection import histories
 from ramtek_emu.inspection.histories import EntryRange, Search, Selection, Write, is_single
 from ramtek_emu.inspection.listing import moved, next_with, rows_from
 from ramtek_emu.inspection.replay import Replay
@@ -159,7 +159,6 @@ def _served(session: Inspection, host: RunningHost) -> Inspection:
     host.serve(not session.is_following)
     if session.replay is not host.replay:
         message = f"the instructions took {MOST_BYTES >> 20} MB of memory: they are counted from here on"
-        listing.forget_meanings()
         session = tell(replace(select(session, None), replay=host.replay, number=0, target=0), message)
     return _followed(session) if session.is_following and session.length != session.number else session
 
