@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.server import HostSession, Record
     from ramtek_emu.inspection.stream import Stream
-
+    from ramtek_emu.monitor.window import Monitor
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -306,28 +306,25 @@ TICK_SECONDS: Final = 0.01
 
 
 def show(
-    display: Ramtek9300,
+    monitor: Monitor,
     run: Run,
-    serve_for: Callable[[float], None],
-    waits: Callable[[], bool] = lambda: False,
+    is_busy: Callable[[], bool] = lambda: False,
+    may_hint: Callable[[], bool] = lambda: True,
 ) -> None:
-    """Show the display in a window until it is closed, or a signal ends it. Each tick calls `serve_for`.
+    """Show a window with hints until it is closed, or a signal ends the display.
 
-    While `waits()` is true, `serve_for` itself waits for a host's words, and the window does not wait for
-    input.
+    While `is_busy()` is true, the window does not wait for input. While `may_hint()` is false, no hints are
+    shown.
     """
-    from ramtek_emu.monitor.window import Monitor
+    from ramtek_emu.monitor.window import TICK_MILLISECONDS
 
-    def tick() -> None:
-        if run.ends:
-            monitor.close()
-        else:
-            serve_for(TICK_SECONDS)
-            if hint := run.hint_at_rest(display, time.monotonic()):
+    monitor.open()
+    try:
+        while not run.ends and monitor.step(0 if is_busy() else TICK_MILLISECONDS):
+            if may_hint() and (hint := run.hint_at_rest(monitor.display, time.monotonic())):
                 monitor.tell(hint)
-
-    monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
-    monitor.run(waits)
+    finally:
+        monitor.close()
 
 
 def tell_the_end(session: HostSession, run: Run) -> None:

@@ -17,6 +17,7 @@ from ramtek_emu.commands.displays import (
     display_asked_for,
     read_stream,
     refuse_outputs,
+    show,
     start_option,
     table_option,
 )
@@ -119,13 +120,11 @@ def inspect(
         from ramtek_emu.inspection.inspector import Inspector
         from ramtek_emu.inspection.session import inspection_of
 
-        def hint(seconds: float) -> str:
-            # Before the end, the stream may still load the table.
-            return run.hint_at_rest(replay.display, seconds) if replay.number == last else ""
-
         replay.go_to(0 if at is None else at)
         caption = f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}"
-        Inspector(inspection_of(replay), caption).run(hint)
+        inspector = Inspector(inspection_of(replay), caption)
+        # Before the end, the stream may still load the table.
+        show(inspector.monitor, run, inspector.is_busy, lambda: replay.number == last)
         return
     number = last if at is None else at
     if numbers is not None and output is not None:

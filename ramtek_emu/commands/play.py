@@ -11,6 +11,7 @@ import click
 
 from ramtek_emu.command_line import Ended, report
 from ramtek_emu.commands.displays import (
+    TICK_SECONDS,
     display_asked_for,
     display_options,
     open_stream,
@@ -119,8 +120,11 @@ def play(
             shown: pipe.Read = read
             if loads_per_second is not None:
                 shown = pipe.paced(read, loads_per_second, display.configuration)
+            from ramtek_emu.monitor.window import Monitor
+
+            caption = f"RAMTEK {display.configuration.name.replace('_', ' ')}"
             with pipe.PipeServer(display, shown, record=run.record) as server:
-                show(display, run, server.serve_for)
+                show(Monitor(display, caption, on_tick=partial(server.serve_for, TICK_SECONDS)), run)
             return
         server = pipe.PipeServer(display, read, record=run.record)
         if film is None:
