@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from io import BytesIO
 from os import PathLike
-from pathlib import Path
 from struct import pack, unpack_from
 from typing import Final
 from zlib import crc32
@@ -13,7 +12,7 @@ from zlib import crc32
 import numpy as np
 
 from ramtek_emu.arrays import Colors
-from ramtek_emu.writing import PNG, check_suffix, write_atomically, write_numbered
+from ramtek_emu.writing import PNG, check_suffix, write_atomically
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 """The first bytes of a PNG file; chunks follow."""
@@ -66,8 +65,3 @@ def save_png(field: Colors, path: str | PathLike[str], overwrite: bool = False) 
     """
     check_suffix(path, PNG, "a picture")
     write_atomically(path, png_bytes(field), overwrite=overwrite)
-
-
-def save_numbered(field: Colors, folder: Path, name: str) -> Path:
-    """Write a field to NAME-0001.png or the next free number; see `write_numbered`."""
-    return write_numbered(png_bytes(field), folder, name, PNG)

@@ -561,9 +561,11 @@ class Session:
 
     def save_screenshot(self, colors: Bytes) -> None:
         """Save (lines, elements, 3) colors as the next screenshot, "autocolor-0001.png"."""
-        from ramtek_emu.png import save_numbered
+        from ramtek_emu.png import png_bytes
+        from ramtek_emu.writing import PNG, write_numbered
 
-        self.tell(f"saved {save_numbered(colors, self._shown_folder(), 'autocolor')}")
+        path = write_numbered(png_bytes(colors), self._shown_folder(), "autocolor", PNG)
+        self.tell(f"saved {path}")
 
     def undo(self, steps: int = 1) -> None:
         """Undo the last step, or some steps at once."""

@@ -36,6 +36,7 @@ from ramtek_emu.monitor.input_queue import Key as Key
 from ramtek_emu.monitor.input_queue import Pointer as Pointer
 from ramtek_emu.monitor.overlay import PAGES, Overlay
 from ramtek_emu.video.scan_out import turned
+from ramtek_emu.writing import PNG, write_numbered
 
 if TYPE_CHECKING:
     from ramtek_emu.films import TimedFilm
@@ -228,9 +229,9 @@ class Monitor:
 
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; OutputError or WriteError."""
-        from ramtek_emu.png import save_numbered
+        from ramtek_emu.png import png_bytes
 
-        return save_numbered(self.source.field(), self.screenshots, self.file_name)
+        return write_numbered(png_bytes(self.source.field()), self.screenshots, self.file_name, PNG)
 
     def toggle_recording(self) -> None:
         """Begin a film with the field that is shown; or end it, save it, and show its path."""
@@ -249,7 +250,6 @@ class Monitor:
         A film that cannot be saved in the folder of screenshots goes to the folder of temporary files.
         """
         from ramtek_emu.films import FILM
-        from ramtek_emu.writing import write_numbered
 
         self._film = None
         fields, data, reason = film.fields, film.end(time.monotonic()), ""

@@ -13,7 +13,7 @@ import pytest
 
 from ramtek_emu import OutputError, OutputExistsError, Ramtek9300, WriteError, write_snapshot, writing
 from ramtek_emu.png import png_bytes, save_png
-from ramtek_emu.writing import Output, refuse_output, write_atomically
+from ramtek_emu.writing import Output, refuse_output, write_atomically, write_numbered
 
 FIELD = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
 
@@ -189,3 +189,9 @@ def test_paths_of_the_same_file_are_found(tmp_path: Path, monkeypatch: pytest.Mo
     (tmp_path / "a.png").touch()
     os.link("a.png", "hard")
     assert writing.same_outputs(("hard", "a.png")) == ("hard", "a.png")
+
+
+def test_a_number_whose_name_is_in_use_by_anything_is_skipped(tmp_path: Path) -> None:
+    (tmp_path / "a-0001.png").mkdir()
+    (tmp_path / "a-0002.png").symlink_to("nowhere")
+    assert write_numbered(b"new", tmp_path, "a", ".png").name == "a-0003.png"
