@@ -180,7 +180,8 @@ class Client:
         self._replies: deque[bytes] = deque()
         self._pending: Iterator[bytes] | None = None
         self._sent_all = False
-        self._last_transfer = time.monotonic()
+        self.deadline = time.monotonic() + idle_seconds
+        """The time when the host is disconnected, unless something is transferred before."""
 
     @property
     def waiting(self) -> int:
@@ -198,11 +199,6 @@ class Client:
         has_left = self._sent_all and self._pending is None and not self._replies
         return has_left or time.monotonic() >= self.deadline
 
-    @property
-    def deadline(self) -> float:
-        """The time when the host is disconnected, unless something is transferred before."""
-        return self._last_transfer + self.idle_seconds
-
     def step(self, seconds: float = 0.0) -> bool:
         """Read, execute and reply once, waiting up to `seconds`; returns whether anything was done."""
         reads = self._pending is None and not self._sent_all and self.waiting < REPLY_BYTES
@@ -214,7 +210,7 @@ class Client:
         if events & selectors.EVENT_READ:
             self._read()
         if events:
-            self._last_transfer = time.monotonic()
+            self.deadline = time.monotonic() + self.idle_seconds
         return self._work() or events != 0
 
     def _send(self) -> None:
@@ -262,7 +258,7 @@ class Client:
                     self._receive()
         if has_work or self.session.is_stopped:
             # The display was working, or a program stops the host: this was no silence of the host.
-            self._last_transfer = time.monotonic()
+            self.deadline = time.monotonic() + self.idle_seconds
         return has_work
 
     def close(self) -> None:
