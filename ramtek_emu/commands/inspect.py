@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -145,8 +145,12 @@ def inspect(
     if who is not None:
         answer(replay, who, number, as_json)
     elif as_json:
+        from ramtek_emu.inspection.differences import plain_values
+
         replay.go_to(number)
-        click.echo(json.dumps(plain_moment(replay)))
+        instruction = replay.stream.item(number).to_plain() if number else None
+        moment = {"number": number, "of": last, "instruction": instruction, "reply": replay.reply.tolist()}
+        click.echo(json.dumps(moment | plain_values(replay.display)))
 
 
 def refuse_range(numbers: tuple[int, int], at: int | None, output: str | None) -> None:
@@ -184,12 +188,3 @@ def answer(replay: Replay, pixel: tuple[int, int], until: int, as_json: bool) ->
         click.echo(f"{write.number:>8}  {write.before:04X} -> {write.after:04X}  {listed}")
     if not writes:
         report(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")
-
-
-def plain_moment(replay: Replay) -> dict[str, Any]:
-    """An instruction, its reply and the small parts of the display after it, in plain values."""
-    from ramtek_emu.inspection.differences import plain_values
-
-    instruction = replay.stream.item(replay.number).to_plain() if replay.number else None
-    place = {"number": replay.number, "of": len(replay.stream), "instruction": instruction}
-    return place | {"reply": replay.reply.tolist()} | plain_values(replay.display)
