@@ -127,7 +127,7 @@ def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
 
     monkeypatch.setattr(Output, "write", fail)
     monkeypatch.setattr(
-        "ramtek_emu.png.write_atomically", lambda path, data, **_: Path(path).write_bytes(data)
+        "ramtek_emu.display.write_atomically", lambda path, data, **_: Path(path).write_bytes(data)
     )
     played = play(frames, "--film", name, "-o", "end.png")
     assert played.exit_code == 74
