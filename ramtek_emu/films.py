@@ -55,7 +55,8 @@ def write_film(
     check_film(path, fields_per_second, overwrite)
     if Path(path).suffix.lower() == PICTURES:
         for number, field in enumerate(_alike(fields), 1):
-            write_atomically(numbered(path, number), png_bytes(field), overwrite=overwrite, sync=False)
+            picture = fspath(path).format(number=number)
+            write_atomically(picture, png_bytes(field), overwrite=overwrite, sync=False)
         return
     with Output(path, overwrite=overwrite) as output:
         film = AnimatedWebp(output.write, loop)
@@ -83,7 +84,7 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
     if suffix == PICTURES:
         second = first
         with suppress(LookupError, ValueError, TypeError, AttributeError):
-            first, second = (numbered(path, number) for number in (1, 2))
+            first, second = (fspath(path).format(number=number) for number in (1, 2))
         if first == second:
             raise OutputError(
                 "numbered pictures must have a number in their name, as in frame-{number:04}.png, not"
@@ -91,15 +92,6 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
             )
     refuse_output(first, overwrite)
     return first
-
-
-def numbered(pattern: str | PathLike[str], number: int) -> str:
-    """The path of a numbered picture.
-
-    >>> numbered("frame-{number:04}.png", 7)
-    'frame-0007.png'
-    """
-    return fspath(pattern).format(number=number)
 
 
 def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:
