@@ -227,11 +227,16 @@ class Monitor:
         self.glass.fit = not self.glass.fit
         self.tell("the picture fills the window" if self.glass.fit else "the picture at a whole multiple")
 
-    def screenshot(self) -> Path:
-        """Save the field under the next free number, never over a file; OutputError or WriteError."""
+    def screenshot(self) -> None:
+        """Save the field under the next free number, without a message on it, and show its path."""
         from ramtek_emu.png import png_bytes
 
-        return write_numbered(png_bytes(self.source.field()), self.screenshots, self.file_name, PNG)
+        self.tell("")
+        field = png_bytes(self.source.field())
+        try:
+            self.tell(f"saved {write_numbered(field, self.screenshots, self.file_name, PNG)}")
+        except RamtekError as refusal:
+            self.tell(str(refusal))
 
     def toggle_recording(self) -> None:
         """Begin a film with the field that is shown; or end it, save it, and show its path."""
@@ -303,7 +308,7 @@ class Monitor:
         shortcuts |= {"return": self.toggle_full_screen} if key.alt else {}
         shortcuts |= {"escape": self.toggle_full_screen} if self.full_screen else {}
         shortcuts |= {"q": self.ask_to_close} if key.control else {}
-        pages: dict[str, Callable[[], object]] = {"f12": self._tell_of_screenshot}
+        pages: dict[str, Callable[[], object]] = {"f12": self.screenshot}
         pages |= {name: partial(self.overlay.turn_to, page) for name, page in PAGES.items()}
         pages |= {"f2": lambda: self.tell(turned(self.display.scan_out))} if self.on_key is None else {}
         if key.name in MODIFIERS:
@@ -314,14 +319,6 @@ class Monitor:
             self.overlay.page = ""
         elif not key.repeated and (run := (shortcuts | pages).get(key.name)):
             run()
-
-    def _tell_of_screenshot(self) -> None:
-        """Take a screenshot, without a message on it, and show its path."""
-        self.tell("")
-        try:
-            self.tell(f"saved {self.screenshot()}")
-        except RamtekError as refusal:
-            self.tell(str(refusal))
 
     def handle_pointer(self, pointer: Pointer) -> None:
         """Move the joystick and set its switches, unless a program's page is shown; call `on_pointer`."""
