@@ -116,7 +116,7 @@ class Inspector:
         if part == "button":
             self._do(self.buttons[row].action)
         elif part in ("listing", "history") and row >= 0:
-            self._do(sessions.click_listing if part == "listing" else sessions.click_history, row)
+            self._do(sessions.click, part, row)
         elif part == "bar" or (part == "stage" and self.session.page != "help"):
             self._anchor, self._anchor_place = part, place
             if part == "bar":

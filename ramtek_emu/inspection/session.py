@@ -24,7 +24,8 @@ from ramtek_emu.inspection.histories import EntryRange, Search, Selection, Write
 from ramtek_emu.inspection.listing import moved, next_with, rows_from
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
-from ramtek_emu.instruction_set.disassembler import IN_HEXADECIMAL
+from ramtek_emu.instruction_set.disassembler import operand_text
+from ramtek_emu.instruction_set.table import OPERANDS
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.video.view import pixel_at
 
@@ -294,16 +295,11 @@ def turn_to(session: Inspection, page: str) -> Inspection:
     return replace(session, page="" if session.page == page else page, pointed=None)
 
 
-def click_listing(session: Inspection, row: int) -> Inspection:
-    """Go to the instruction in a row of the listing."""
-    rows = shown_rows(session)
-    return go(session, rows[row].start) if row < len(rows) else session
-
-
-def click_history(session: Inspection, row: int) -> Inspection:
-    """Go to the instruction in a row of the history."""
-    writes = shown_writes(session)
-    return go(session, writes[row].number) if row < len(writes) else session
+def click(session: Inspection, panel: str, row: int) -> Inspection:
+    """Go to the instruction in a row of the "listing" or of the "history"."""
+    listed = [instructions.start for instructions in shown_rows(session)]
+    numbers = listed if panel == "listing" else [write.number for write in shown_writes(session)]
+    return go(session, numbers[row]) if row < len(numbers) else session
 
 
 def shown_rows(session: Inspection) -> list[range]:
@@ -353,12 +349,10 @@ def parameter_texts(display: Ramtek9300) -> dict[str, str]:
 
 
 def value_text(name: str, value: Any) -> str:
-    """The text of a parameter: masks and bits in hexadecimal, a window by its corners."""
+    """The text of a parameter, as operands are listed; the numbers of a conic in decimal."""
     numbers = value if isinstance(value, tuple) else (int(value),)
-    if name in IN_HEXADECIMAL and name != "conic":
-        return ",".join(f"0x{number:04X}" for number in numbers)
-    if isinstance(value, Window):
-        return "{},{}..{},{}".format(*value)
+    if name in OPERANDS and name != "conic":
+        return operand_text(name, tuple(number & 0xFFFF for number in numbers))
     return ",".join(map(str, numbers))
 
 
