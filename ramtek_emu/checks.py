@@ -36,7 +36,7 @@ def checked_number(
 
 
 def checked_coordinate(value: object, thing: str) -> int:
-    """The value as an element or a line, perhaps outside the memory; InstructionError if no word holds it."""
+    """The value as a number that a word holds, with a sign or without one; InstructionError otherwise."""
     return checked_number(value, thing, -0x8000, 0xFFFF, "round or clip it", InstructionError)
 
 

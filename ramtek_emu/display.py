@@ -25,6 +25,7 @@ from ramtek_emu.processor import cursor_executors, drawing_executors, environmen
 from ramtek_emu.processor.processor import Executors, Pauses, Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
+from ramtek_emu.writing import PNG, check_suffix, write_atomically
 
 
 class Ramtek9300:
@@ -192,9 +193,8 @@ class Ramtek9300:
         Raises OutputError for a name that does not end in .png, and if no file can be created there;
         OutputExistsError if the file exists and `overwrite` is false; WriteError if writing fails.
         """
-        from ramtek_emu.png import save_png
-
-        save_png(self.field(), path, overwrite)
+        check_suffix(path, PNG, "a picture")
+        write_atomically(path, self._repr_png_(), overwrite=overwrite)
 
     def __repr__(self) -> str:
         sizes = self.configuration
@@ -204,7 +204,7 @@ class Ramtek9300:
         )
 
     def _repr_png_(self) -> bytes:
-        """The field for a notebook."""
+        """The field as the bytes of a PNG file, for a notebook."""
         from ramtek_emu.png import png_bytes
 
         return png_bytes(self.field())

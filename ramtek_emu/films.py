@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from io import BytesIO
 from os import PathLike, fspath
 from pathlib import Path
@@ -54,7 +55,8 @@ def write_film(
     check_film(path, fields_per_second, overwrite)
     if Path(path).suffix.lower() == PICTURES:
         for number, field in enumerate(_alike(fields), 1):
-            write_atomically(numbered(path, number), png_bytes(field), overwrite=overwrite, sync=False)
+            picture = fspath(path).format(number=number)
+            write_atomically(picture, png_bytes(field), overwrite=overwrite, sync=False)
         return
     with Output(path, overwrite=overwrite) as output:
         film = AnimatedWebp(output.write, loop)
@@ -64,9 +66,12 @@ def write_film(
         output.keep()
 
 
-def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: bool = False) -> None:
-    """Raise the error of `write_film` for a path that it cannot write, or for a rate of no film."""
-    suffix = Path(path).suffix.lower()
+def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: bool = False) -> str:
+    """The path of a film, or of the first of numbered pictures.
+
+    Raises the error of `write_film` for a path that it cannot write, or for a rate of no film.
+    """
+    first, suffix = fspath(path), Path(path).suffix.lower()
     if suffix not in (FILM, PICTURES):
         raise OutputError(
             f"a film must end in {FILM}, or in {PICTURES} with a number, not in {suffix!r}; rename it"
@@ -77,32 +82,16 @@ def check_film(path: str | PathLike[str], fields_per_second: float, overwrite: b
             " choose another rate"
         )
     if suffix == PICTURES:
-        _check_pattern(Path(path), overwrite)
-    else:
-        refuse_output(path, overwrite)
-
-
-def _check_pattern(pattern: Path, overwrite: bool) -> None:
-    """Raise OutputError or OutputExistsError for a pattern of numbered pictures that cannot be written."""
-    try:
-        first, second = (numbered(pattern, number) for number in (1, 2))
-    except (LookupError, ValueError, TypeError, AttributeError):
-        first = second = ""
-    if first == second:
-        raise OutputError(
-            "numbered pictures must have a number in their name, as in frame-{number:04}.png, not"
-            f" {fspath(pattern)!r}; or end the name in .webp for a film"
-        )
+        second = first
+        with suppress(LookupError, ValueError, TypeError, AttributeError):
+            first, second = (fspath(path).format(number=number) for number in (1, 2))
+        if first == second:
+            raise OutputError(
+                "numbered pictures must have a number in their name, as in frame-{number:04}.png, not"
+                f" {fspath(path)!r}; or end the name in .webp for a film"
+            )
     refuse_output(first, overwrite)
-
-
-def numbered(pattern: str | PathLike[str], number: int) -> str:
-    """The path of a numbered picture.
-
-    >>> numbered("frame-{number:04}.png", 7)
-    'frame-0007.png'
-    """
-    return fspath(pattern).format(number=number)
+    return first
 
 
 def _alike(fields: Iterable[Colors]) -> Iterator[Colors]:

@@ -50,11 +50,6 @@ def reset() -> Words:
     return encode(Instruction(FORMAT_OF_NAME["RSET"]))
 
 
-def initialize() -> Words:
-    """INIT: set every parameter as at power-on; screen and lookup table are kept."""
-    return encode(Instruction(FORMAT_OF_NAME["INIT"]))
-
-
 def set_parameters(**operands: OperandValue | None) -> Words:
     """SET: set operands by name (`foreground=3`, `window=(0, 0, 639, 479)`); they stay until set again."""
     return encode(normal("SET", operands))
@@ -268,7 +263,6 @@ def read_cursor(number: int) -> Words:
     return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | checked_number(number, *CURSOR)], np.uint16)
 
 
-LOW_BYTE_FIRST: Final = np.dtype("<u2")
 THREE_WORDS: Final = Struct("<3H")
 LOAD: Final = FORMAT_OF_NAME["LAM"].opcode << 8
 """The instruction word of LAM for table 0."""
@@ -291,7 +285,7 @@ def load_entries(first: int, colors: object, entries: int = 1024, short: bool = 
     memory = bytearray(6 + 4 * len(checked))
     memory[6::4], memory[7::4], memory[8::4] = data[2::3], data[1::3], data[0::3]
     memory[:6] = THREE_WORDS.pack(LOAD, 2 * int(first), 4 * len(checked))
-    return np.frombuffer(memory, LOW_BYTE_FIRST)
+    return np.frombuffer(memory, "<u2")
 
 
 def park_table(address: int = 0) -> Words:

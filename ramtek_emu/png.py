@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from io import BytesIO
-from os import PathLike
-from pathlib import Path
 from struct import pack, unpack_from
 from typing import Final
 from zlib import crc32
@@ -13,7 +11,6 @@ from zlib import crc32
 import numpy as np
 
 from ramtek_emu.arrays import Colors
-from ramtek_emu.writing import PNG, check_suffix, write_atomically, write_numbered
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 """The first bytes of a PNG file; chunks follow."""
@@ -56,18 +53,3 @@ def png_bytes(field: Colors, level: int | None = None) -> bytes:
     level = LEVEL if level is None else level
     Image.fromarray(np.ascontiguousarray(field)).save(buffer, "PNG", compress_level=level)
     return buffer.getvalue()
-
-
-def save_png(field: Colors, path: str | PathLike[str], overwrite: bool = False) -> None:
-    """Write a field to a PNG file, whole or not at all.
-
-    Raises OutputError for a name that does not end in .png, and if no file can be created there;
-    OutputExistsError if the file exists and `overwrite` is false; WriteError if writing fails.
-    """
-    check_suffix(path, PNG, "a picture")
-    write_atomically(path, png_bytes(field), overwrite=overwrite)
-
-
-def save_numbered(field: Colors, folder: Path, name: str) -> Path:
-    """Write a field to NAME-0001.png or the next free number; see `write_numbered`."""
-    return write_numbered(png_bytes(field), folder, name, PNG)

@@ -32,7 +32,8 @@ from autocolor.images import averaged, smoothed
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import GMR_9300, Ramtek9300, instructions
 from ramtek_emu.memory.cursors import Joystick
-from ramtek_emu.png import save_png
+from ramtek_emu.png import png_bytes
+from ramtek_emu.writing import write_atomically
 
 SCENES = Path(__file__).parent
 FIGURES = (
@@ -173,7 +174,7 @@ class Sheet:
         if self.reduction > 1:
             # Components that are off by 1 at most are not seen, and take a third less space.
             field = ((field.astype(np.uint16) + 1) // 3 * 3).astype(np.uint8)
-        save_png(field, self.folder / name, overwrite=True)
+        write_atomically(self.folder / name, png_bytes(field), overwrite=True)
         print(self.folder / name)
 
 

@@ -219,5 +219,5 @@ def connected(monitor: Monitor, viewer: Viewer, update: Callable[[], None] = lam
     monitor.on_pointer, monitor.on_drop = on_pointer, viewer.on_drop
     monitor.on_tick, monitor.on_close, monitor.on_message = on_tick, viewer.on_close, viewer.tell
     monitor.screenshots, monitor.file_name = viewer.folder, "autocolor"
-    viewer.session.clipboard = Clipboard(monitor.copy, monitor.paste)
+    viewer.session.clipboard = Clipboard(monitor.glass.copy, monitor.glass.paste)
     return monitor

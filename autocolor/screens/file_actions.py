@@ -150,9 +150,11 @@ def save_image(session: Session) -> None:
 
 def save_screenshot(session: Session, colors: Bytes) -> None:
     """Save (lines, elements, 3) colors as the next screenshot, "autocolor-0001.png"."""
-    from ramtek_emu.png import save_numbered
+    from ramtek_emu.png import png_bytes
+    from ramtek_emu.writing import PNG, write_numbered
 
-    session.tell(f"saved {save_numbered(colors, shown_folder(session), 'autocolor')}")
+    path = write_numbered(png_bytes(colors), shown_folder(session), "autocolor", PNG)
+    session.tell(f"saved {path}")
 
 
 def unsaved_changes(session: Session) -> str:

@@ -8,7 +8,8 @@ from typing import Final
 
 import click
 
-from ramtek_emu.commands.displays import open_stream, refuse_outputs, tell
+from ramtek_emu.command_line import report
+from ramtek_emu.commands.displays import open_stream, refuse_outputs
 from ramtek_emu.writing import write_atomically
 
 EXAMPLES: Final = """\b
@@ -38,4 +39,4 @@ def assemble(listing: str, output: str, force: bool) -> None:
         sys.stdout.buffer.write(data)
         return
     write_atomically(output, data, overwrite=force)
-    tell(f"wrote {output}")
+    report(f"wrote {output}")

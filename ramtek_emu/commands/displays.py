@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 import click
 from click.core import ParameterSource
 
-from ramtek_emu import command_line
-from ramtek_emu.command_line import ENDING, SIGNALS
+from ramtek_emu.command_line import ENDING, SIGNALS, report
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration
 from ramtek_emu.errors import MissingInputError, RamtekError, WordsError, reason_of
 from ramtek_emu.writing import PNG, Output, check_suffix, refuse_output, same_outputs
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.server import HostSession, Record
     from ramtek_emu.inspection.stream import Stream
-
+    from ramtek_emu.monitor.window import Monitor
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -157,7 +156,7 @@ class Run:
             hints["foreign"] = f"a 9300 does not take {foreign}, but the display FAMILY does"
         self.hints |= hints.keys()
         for hint in hints.values():
-            tell(hint)
+            report(hint)
         return "; ".join(hints.values())
 
     def hint_at_rest(self, display: Ramtek9300, seconds: float) -> str:
@@ -202,7 +201,7 @@ class Run:
 
     def fail(self, failure: RamtekError) -> None:
         """Report a failure; the command ends with the exit code of the first."""
-        tell(f"ramtek: {failure}")
+        report(f"ramtek: {failure}")
         self.exit_code = self.exit_code or failure.exit_code
 
 
@@ -231,7 +230,7 @@ def running(
             def record_words(data: bytes) -> None:
                 nonlocal record
                 if record is not None and not run.attempt(lambda: recording.write(data)):
-                    tell("the display goes on without its recording")
+                    report("the display goes on without its recording")
                     record = None
                     opened.close()
 
@@ -239,14 +238,14 @@ def running(
         yield run
         run.hint(display)
         if record is not None and run.attempt(recording.keep):
-            tell(f"wrote {record}")
+            report(f"wrote {record}")
         if output is not None and run.attempt(lambda: display.save_png(output, overwrite=force)):
-            tell(f"wrote {output}")
+            report(f"wrote {output}")
         if snapshot is not None:
             from ramtek_emu.snapshot import write_snapshot
 
             if run.attempt(lambda: write_snapshot(display, snapshot, overwrite=force)):
-                tell(f"wrote {snapshot}")
+                report(f"wrote {snapshot}")
         # A signal that was noticed must not end the command a second time.
         SIGNALS.ignored = run.ends
     if run.exit_code:
@@ -302,36 +301,30 @@ def unreadable(cause: OSError) -> MissingInputError:
     )
 
 
-tell: Final = command_line.report
-"""Prints a message on stderr; stdout is for results."""
-
 TICK_SECONDS: Final = 0.01
 """How long a host is served before the window is handled again."""
 
 
 def show(
-    display: Ramtek9300,
+    monitor: Monitor,
     run: Run,
-    serve_for: Callable[[float], None],
-    waits: Callable[[], bool] = lambda: False,
+    is_busy: Callable[[], bool] = lambda: False,
+    may_hint: Callable[[], bool] = lambda: True,
 ) -> None:
-    """Show the display in a window until it is closed, or a signal ends it. Each tick calls `serve_for`.
+    """Show a window with hints until it is closed, or a signal ends the display.
 
-    While `waits()` is true, `serve_for` itself waits for a host's words, and the window does not wait for
-    input.
+    While `is_busy()` is true, the window does not wait for input. While `may_hint()` is false, no hints are
+    shown.
     """
-    from ramtek_emu.monitor.window import Monitor
+    from ramtek_emu.monitor.window import TICK_MILLISECONDS
 
-    def tick() -> None:
-        if run.ends:
-            monitor.close()
-        else:
-            serve_for(TICK_SECONDS)
-            if hint := run.hint_at_rest(display, time.monotonic()):
+    monitor.open()
+    try:
+        while not run.ends and monitor.step(0 if is_busy() else TICK_MILLISECONDS):
+            if may_hint() and (hint := run.hint_at_rest(monitor.display, time.monotonic())):
                 monitor.tell(hint)
-
-    monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
-    monitor.run(waits)
+    finally:
+        monitor.close()
 
 
 def tell_the_end(session: HostSession, run: Run) -> None:
@@ -341,9 +334,9 @@ def tell_the_end(session: HostSession, run: Run) -> None:
     """
     processor = session.display.processor
     if illegal := processor.illegal_words:
-        tell(f"words that begin no instruction, skipped: {illegal}")
+        report(f"words that begin no instruction, skipped: {illegal}")
     if unknown := processor.unimplemented:
-        tell(f"instructions known by name only, without effect: {unknown}")
+        report(f"instructions known by name only, without effect: {unknown}")
     tell_unexecuted(session)
     if not run.ends:
         tell_incomplete("the stream", session.display.decoder.pending_words, session.odd_byte != b"")
@@ -352,13 +345,13 @@ def tell_the_end(session: HostSession, run: Run) -> None:
 def tell_unexecuted(session: HostSession) -> None:
     """Report that the display has ended within the words of a host."""
     if session.unexecuted:
-        tell("the display ended before it had executed all words of the host")
+        report("the display ended before it had executed all words of the host")
 
 
 def tell_incomplete(stream: str, words: int, has_odd_byte: bool) -> None:
     """Report the words of an instruction, and the byte, that begin at the end of a stream."""
     if words:
         dropped = "word was" if words == 1 else f"{words} words were"
-        tell(f"{stream} ends within an instruction: its {dropped} dropped")
+        report(f"{stream} ends within an instruction: its {dropped} dropped")
     if has_odd_byte:
-        tell(f"{stream} ends within a word: its last byte was dropped")
+        report(f"{stream} ends within a word: its last byte was dropped")

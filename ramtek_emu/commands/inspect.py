@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
+from ramtek_emu.command_line import report
 from ramtek_emu.commands.displays import (
     Run,
     configuration_option,
     display_asked_for,
     read_stream,
     refuse_outputs,
+    show,
     start_option,
     table_option,
-    tell,
 )
 from ramtek_emu.writing import write_atomically
 
@@ -34,22 +36,16 @@ Examples:
 """
 
 
-class NumberPair(click.ParamType[tuple[int, int]]):
-    """Two numbers, at least 0, with a sign between them."""
+def pair(thing: str, sign: str) -> Callable[[str], tuple[int, int]]:
+    """A function that converts text to two numbers, at least 0, with a sign between them; BadParameter."""
 
-    name = "pair"
-
-    def __init__(self, thing: str, sign: str) -> None:
-        self.thing, self.sign = thing, sign
-
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        """The two numbers; UsageError if the text is something else."""
-        first, _, second = value.partition(self.sign)
+    def convert(value: str) -> tuple[int, int]:
+        first, _, second = value.partition(sign)
         if not (first + second).isdecimal() or not first or not second:
-            self.fail(f"{self.thing} must be two numbers with {self.sign} between them, not {value!r}", param)
+            raise click.BadParameter(f"{thing} must be two numbers with {sign} between them, not {value!r}")
         return int(first), int(second)
+
+    return convert
 
 
 @click.command(epilog=EXAMPLES)
@@ -69,13 +65,13 @@ class NumberPair(click.ParamType[tuple[int, int]]):
 @click.option(
     "--range",
     "numbers",
-    type=NumberPair("a range of instructions", ".."),
+    type=pair("a range of instructions", ".."),
     metavar="A..B",
     help="The instructions A to B, for -o.",
 )
 @click.option(
     "--who",
-    type=NumberPair("a pixel", ","),
+    type=pair("a pixel", ","),
     metavar="ELEMENT,LINE",
     help="List the instructions that wrote a word of the memory, the newest first.",
 )
@@ -124,35 +120,37 @@ def inspect(
         from ramtek_emu.inspection.inspector import Inspector
         from ramtek_emu.inspection.session import inspection_of
 
-        def hint(seconds: float) -> str:
-            # Before the end, the stream may still load the table.
-            return run.hint_at_rest(replay.display, seconds) if replay.number == last else ""
-
         replay.go_to(0 if at is None else at)
         caption = f"{os.path.basename(stream)} - RAMTEK {sizes.name.replace('_', ' ')}"
-        Inspector(inspection_of(replay), caption).run(hint)
+        inspector = Inspector(inspection_of(replay), caption)
+        # Before the end, the stream may still load the table.
+        show(inspector.monitor, run, inspector.is_busy, lambda: replay.number == last)
         return
     number = last if at is None else at
     if numbers is not None and output is not None:
         words = replay.stream.words_between(numbers[0] - 1, numbers[1])
         write_atomically(Path(output), words.astype("<u2").tobytes(), overwrite=force)
-        tell(f"wrote {output}")
+        report(f"wrote {output}")
     elif output is not None:
         replay.go_to(number)
         run.hint(replay.display)
         replay.display.save_png(output, overwrite=force)
-        tell(f"wrote {output}")
+        report(f"wrote {output}")
     if snapshot is not None:
         from ramtek_emu.snapshot import write_snapshot
 
         replay.go_to(number)
         write_snapshot(replay.display, snapshot, overwrite=force)
-        tell(f"wrote {snapshot}")
+        report(f"wrote {snapshot}")
     if who is not None:
         answer(replay, who, number, as_json)
     elif as_json:
+        from ramtek_emu.inspection.differences import plain_values
+
         replay.go_to(number)
-        click.echo(json.dumps(plain_moment(replay)))
+        instruction = replay.stream.item(number).to_plain() if number else None
+        moment = {"number": number, "of": last, "instruction": instruction, "reply": replay.reply.tolist()}
+        click.echo(json.dumps(moment | plain_values(replay.display)))
 
 
 def refuse_range(numbers: tuple[int, int], at: int | None, output: str | None) -> None:
@@ -189,13 +187,4 @@ def answer(replay: Replay, pixel: tuple[int, int], until: int, as_json: bool) ->
         listed = next(replay.stream.item(write.number).lines())
         click.echo(f"{write.number:>8}  {write.before:04X} -> {write.after:04X}  {listed}")
     if not writes:
-        tell(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")
-
-
-def plain_moment(replay: Replay) -> dict[str, Any]:
-    """An instruction, its reply and the small parts of the display after it, in plain values."""
-    from ramtek_emu.inspection.differences import plain_values
-
-    instruction = replay.stream.item(replay.number).to_plain() if replay.number else None
-    place = {"number": replay.number, "of": len(replay.stream), "instruction": instruction}
-    return place | {"reply": replay.reply.tolist()} | plain_values(replay.display)
+        report(f"none of the first {until} instructions writes element {pixel[0]}, line {pixel[1]}")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from functools import partial
+from typing import Final
 
 import click
 
-from ramtek_emu.command_line import Ended
+from ramtek_emu.command_line import Ended, report
 from ramtek_emu.commands.displays import (
-    Run,
+    TICK_SECONDS,
     display_asked_for,
     display_options,
     open_stream,
@@ -19,14 +19,9 @@ from ramtek_emu.commands.displays import (
     refuse_outputs,
     running,
     show,
-    tell,
     tell_the_end,
     unreadable,
 )
-from ramtek_emu.writing import PNG
-
-if TYPE_CHECKING:
-    from ramtek_emu.arrays import Colors
 
 EXAMPLES: Final = """\b
 Examples:
@@ -92,19 +87,16 @@ def play(
     Without -o, --snapshot or --film it is shown in a window. The replies to instructions that read are
     dropped.
     """
-    film_file = film
+    film_file = None
     in_window = output is None and snapshot is None and film is None
     if not in_window:
         refuse_given(context, "with an output", "loads_per_second")
     if film is None:
         refuse_given(context, "without --film", "every", "fps", "once")
     else:
-        from ramtek_emu.films import check_film, numbered
+        from ramtek_emu.films import check_film, write_film
 
-        check_film(film, fps, force)
-        if film.lower().endswith(PNG):
-            # No output may be the first picture, which stands for all.
-            film_file = numbered(film, 1)
+        film_file = check_film(film, fps, force)
     refuse_outputs(force, record, film_file, pictures=[output, snapshot])
     file = open_stream(stream)
     display = display_asked_for(configuration, start, table)
@@ -128,8 +120,11 @@ def play(
             shown: pipe.Read = read
             if loads_per_second is not None:
                 shown = pipe.paced(read, loads_per_second, display.configuration)
+            from ramtek_emu.monitor.window import Monitor
+
+            caption = f"RAMTEK {display.configuration.name.replace('_', ' ')}"
             with pipe.PipeServer(display, shown, record=run.record) as server:
-                show(display, run, server.serve_for)
+                show(Monitor(display, caption, on_tick=partial(server.serve_for, TICK_SECONDS)), run)
             return
         server = pipe.PipeServer(display, read, record=run.record)
         if film is None:
@@ -138,17 +133,12 @@ def play(
             is_cut = pipe.is_load if every is None else pipe.every(every)
             cut = pipe.stream_pieces(read, display.configuration, is_cut)
             fields = pipe.stream_fields(server.session, cut, lambda: run.ends)
-            write_fields(film, fields, run, fps, not once, force)
+            write = partial(write_film, film, fields, fields_per_second=fps, loop=not once, overwrite=force)
+            if run.attempt(write):
+                report(f"wrote {film}")
+            # After a film that failed, the stream goes on.
+            for _ in fields:
+                pass
         tell_the_end(server.session, run)
     if run.signal:
         raise Ended(run.signal)
-
-
-def write_fields(path: str, fields: Iterator[Colors], run: Run, rate: float, loop: bool, force: bool) -> None:
-    """Execute a stream and write its film. If the film fails, that is reported, and the stream goes on."""
-    from ramtek_emu.films import write_film
-
-    if run.attempt(lambda: write_film(path, fields, fields_per_second=rate, loop=loop, overwrite=force)):
-        tell(f"wrote {path}")
-    for _ in fields:
-        pass

@@ -7,19 +7,19 @@ import select
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
 
+from ramtek_emu.command_line import report
 from ramtek_emu.commands.displays import (
+    TICK_SECONDS,
     display_asked_for,
     display_options,
     refuse_given,
     refuse_outputs,
     running,
     show,
-    tell,
     tell_the_end,
     tell_unexecuted,
 )
@@ -117,7 +117,7 @@ def serve(
     from ramtek_emu.host.server import TcpServer, UnixServer
 
     with running(display, output, snapshot, record, force) as run:
-        lines = None if joystick is None else JoystickLines(joystick, tell)
+        lines = None if joystick is None else JoystickLines(joystick, report)
         server: TcpServer | UnixServer | PipeServer
         if unix is not None:
             server = UnixServer(display, unix, idle_seconds=idle, record=run.record)
@@ -156,24 +156,24 @@ def serve(
 
 def watch(server: Server, run: Run, obey: Callable[[], object], inspect: bool) -> None:
     """Show the display in a window, or in that of an inspector, until it is closed or a signal ends it."""
-    from ramtek_emu.host.server import HOST_SECONDS
-
+    caption = f"RAMTEK {server.display.configuration.name.replace('_', ' ')}"
     if inspect:
         from ramtek_emu.inspection.inspector import Inspector
         from ramtek_emu.inspection.running_host import RunningHost
         from ramtek_emu.inspection.session import inspection_of
 
-        session = inspection_of(RunningHost(server, obey))
-        name = server.display.configuration.name.replace("_", " ")
-        hint = partial(run.hint_at_rest, server.display)
-        Inspector(session, f"RAMTEK {name}").run(hint, lambda: run.ends)
+        inspector = Inspector(inspection_of(RunningHost(server, obey)), caption)
+        show(inspector.monitor, run, inspector.is_busy)
         return
 
-    def serve_for(seconds: float) -> None:
-        obey()
-        server.serve_for(seconds, HOST_SECONDS)
+    from ramtek_emu.host.server import HOST_SECONDS
+    from ramtek_emu.monitor.window import Monitor
 
-    show(server.display, run, serve_for, lambda: server.busy)
+    def tick() -> None:
+        obey()
+        server.serve_for(TICK_SECONDS, HOST_SECONDS)
+
+    show(Monitor(server.display, caption, on_tick=tick), run, lambda: server.busy)
 
 
 def standard_streams(run: Run) -> tuple[Read, Write]:
@@ -204,7 +204,7 @@ def standard_streams(run: Run) -> tuple[Read, Write]:
 def announce(address: str, host: str) -> None:
     """Print the address for hosts, with a warning if other machines can reach it."""
     if host not in ("127.0.0.1", "localhost", "::1"):
-        tell(
+        report(
             f"warning: whoever reaches {address} can draw on this display and read it back; "
             "leave --host out to keep to this machine"
         )

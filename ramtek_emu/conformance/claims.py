@@ -15,9 +15,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from ramtek_emu.arrays import Words
+from ramtek_emu.instruction_set.assembler import hexadecimal_words
 from ramtek_emu.instruction_set.disassembler import runs
 
 JOYSTICK: Final = "joystick "
@@ -80,9 +79,7 @@ def all_claims() -> list[Claim]:
 
 def words_of(text: str) -> Words:
     """The words of a text, (n,) uint16: `0010` is a word, `0010*640` is a word 640 times."""
-    parts = [part.partition("*") for part in text.split()]
-    values = np.array([int(word, 16) for word, _, _ in parts], np.uint16)
-    return np.repeat(values, [int(times or 1) for _, _, times in parts])
+    return hexadecimal_words(text.split())
 
 
 def text_of(words: Words) -> str:

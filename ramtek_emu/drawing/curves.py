@@ -48,7 +48,10 @@ def write_circles(
         circles = rows.stop - rows.start
         which, numbers = numbered(counts[rows].T.reshape(-1))
         across = numbers + first[rows].T.reshape(-1)[which]
-        down = nearest_root(np.tile(radii[rows] ** 2, 2)[which] - across * across)
+        # Take the whole numbers nearest to square roots. No root of a whole number is half way between two.
+        squares = np.maximum(np.tile(radii[rows] ** 2, 2)[which] - across * across, 0)
+        down = np.sqrt(squares).astype(np.int64)
+        down += squares - down * down > down
         flat = np.abs(across) <= down
         which, across, down = which[flat], across[flat], down[flat]
         along = across + centers[rows].T.reshape(-1)[which]
@@ -59,12 +62,6 @@ def write_circles(
             lines = np.concatenate((aside[:turn], along[turn:]))
             frame_buffer.write_points(elements, lines, word, enable)
         yield rows.stop
-
-
-def nearest_root(squares: Numbers) -> Numbers:
-    """The whole numbers nearest to the square roots. No root of a whole number is half way between two."""
-    root = np.sqrt(np.maximum(squares, 0)).astype(np.int64)
-    return root + (squares - root * root > root)
 
 
 def conic_pixels(

@@ -127,13 +127,6 @@ class SocketPort:
         self.socket = prepared(connected)
         self._received = bytearray()
 
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.address}, {'closed' if self._is_closed else 'open'})"
-
-    @property
-    def _is_closed(self) -> bool:
-        return self.socket.fileno() < 0
-
     def send(self, words: Words) -> None:
         """Send 16-bit words; PortError if the connection is lost."""
         self._send(checked_stream(words).astype("<u2", copy=False).tobytes())
@@ -164,7 +157,7 @@ class SocketPort:
         Unread replies are dropped. PortError if the display turned this host away, was lost, or does not
         execute all words within `timeout` seconds.
         """
-        if self._is_closed:
+        if self.socket.fileno() < 0:
             return
         deadline = time.monotonic() + self.timeout
         with self.socket:
@@ -210,7 +203,7 @@ class SocketPort:
 
     def _exchange(self, deadline: float, data: bytes | memoryview = b"") -> int:
         """Wait until the display sends replies or takes bytes of the data, and return how many it took."""
-        if self._is_closed:
+        if self.socket.fileno() < 0:
             raise PortError(f"a port must be open, not closed ({self.address}); open it again")
         wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if data else 0)
         events = ready(self.socket, wanted, max(0.0, deadline - time.monotonic()))

@@ -180,7 +180,8 @@ class Client:
         self._replies: deque[bytes] = deque()
         self._pending: Iterator[bytes] | None = None
         self._sent_all = False
-        self._last_transfer = time.monotonic()
+        self.deadline = time.monotonic() + idle_seconds
+        """The time when the host is disconnected, unless something is transferred before."""
 
     @property
     def waiting(self) -> int:
@@ -198,11 +199,6 @@ class Client:
         has_left = self._sent_all and self._pending is None and not self._replies
         return has_left or time.monotonic() >= self.deadline
 
-    @property
-    def deadline(self) -> float:
-        """The time when the host is disconnected, unless something is transferred before."""
-        return self._last_transfer + self.idle_seconds
-
     def step(self, seconds: float = 0.0) -> bool:
         """Read, execute and reply once, waiting up to `seconds`; returns whether anything was done."""
         reads = self._pending is None and not self._sent_all and self.waiting < REPLY_BYTES
@@ -214,7 +210,7 @@ class Client:
         if events & selectors.EVENT_READ:
             self._read()
         if events:
-            self._last_transfer = time.monotonic()
+            self.deadline = time.monotonic() + self.idle_seconds
         return self._work() or events != 0
 
     def _send(self) -> None:
@@ -262,7 +258,7 @@ class Client:
                     self._receive()
         if has_work or self.session.is_stopped:
             # The display was working, or a program stops the host: this was no silence of the host.
-            self._last_transfer = time.monotonic()
+            self.deadline = time.monotonic() + self.idle_seconds
         return has_work
 
     def close(self) -> None:
@@ -432,6 +428,9 @@ class UnixServer(Server):
 def listen_at(listener: socket.socket, path: str) -> os.stat_result:
     """Listen at a path, which then names the socket; returns the state of its file.
 
+    The socket of a server that is gone is removed. OutputExistsError if anything else is at the path, OSError
+    if the path is too long for a socket.
+
     The name appears when the socket listens already, so that no host that finds it is refused. Before, the
     socket has a hidden name in the same folder, which only Linux can name by its descriptor.
     """
@@ -446,7 +445,13 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
         listener.bind(hidden)
         try:
             listener.listen(HOSTS_IN_LINE)
-            remove_stale_socket(path)
+            # A running server refuses a socket of another type and is not disturbed.
+            with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
+                refusal = asking.connect_ex(path)
+            if refusal == errno.EPROTOTYPE:
+                raise taken(path, "belongs to a server that runs")
+            if refusal == errno.ECONNREFUSED and stat.S_ISSOCK(os.lstat(path).st_mode):
+                os.unlink(path)
             # Unlike a renaming, a link replaces no file that another server has made meanwhile.
             try:
                 os.link(hidden, path)
@@ -457,22 +462,6 @@ def listen_at(listener: socket.socket, path: str) -> os.stat_result:
             os.unlink(hidden)
     finally:
         os.close(folder)
-
-
-def remove_stale_socket(path: str) -> None:
-    """Remove the socket of a server that is gone; OutputExistsError if anything else is at the path.
-
-    OSError if the path is too long for a socket.
-    """
-    if sys.platform != "linux":
-        raise OSError("packet sockets are of Linux")
-    # A running server refuses a socket of another type and is not disturbed.
-    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as asking:
-        refusal = asking.connect_ex(path)
-    if refusal == errno.EPROTOTYPE:
-        raise taken(path, "belongs to a server that runs")
-    if refusal == errno.ECONNREFUSED and stat.S_ISSOCK(os.lstat(path).st_mode):
-        os.unlink(path)
 
 
 def taken(path: str, thing: str) -> OutputExistsError:

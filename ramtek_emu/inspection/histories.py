@@ -7,7 +7,7 @@ generator that pauses often. `finished` runs it without pauses.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from typing import Final, NamedTuple, TypeAlias, TypeVar
+from typing import NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -16,9 +16,6 @@ from ramtek_emu.display import Ramtek9300
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.scan_orders import Window
-
-LOAD: Final = FORMAT_OF_NAME["LAM"].opcode
-"""The only opcode that writes entries."""
 
 
 class EntryRange(NamedTuple):
@@ -123,7 +120,8 @@ def _writes(
         display = replay.display_at(begin)
         if isinstance(selection, EntryRange):
             # No other instruction changes entries, so only loads are executed.
-            loads = np.flatnonzero(replay.stream.opcodes[begin:end] == LOAD) + begin + 1
+            opcodes = replay.stream.words[replay.stream.ends[begin:end]] >> 8
+            loads = np.flatnonzero(opcodes == FORMAT_OF_NAME["LAM"].opcode) + begin + 1
             numbers = _executed(replay, display, loads.tolist())
             table, part = display.lookup_table, slice(selection.first, selection.end)
             table.touched = np.zeros(table.size, np.bool_)

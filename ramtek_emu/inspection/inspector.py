@@ -7,7 +7,6 @@ mouse over its field is its joystick.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -62,23 +61,9 @@ class Inspector:
         """Show the inspection after an action."""
         self.page.session = action(self.page.session, *values, **named)
 
-    def run(
-        self, hint: Callable[[float], str] = lambda _: "", ends: Callable[[], bool] = lambda: False
-    ) -> None:
-        """Keep the window open until it is closed, or until `ends()` is true; NoScreenError.
-
-        `hint` returns a message for people at a time of `time.monotonic`, or "".
-        """
-
-        def tick() -> None:
-            self._do(sessions.tick)
-            if message := hint(time.monotonic()):
-                self._do(sessions.tell, message)
-            if ends():
-                self.monitor.close()
-
-        self.monitor.on_tick = tick
-        self.monitor.run(lambda: sessions.is_busy(self.session))
+    def is_busy(self) -> bool:
+        """Whether a tick has work to do, or waits for a host itself."""
+        return sessions.is_busy(self.session)
 
     def press(self, key: Key) -> bool:
         """Handle a key; returns whether it means something here."""
@@ -131,7 +116,7 @@ class Inspector:
         if part == "button":
             self._do(self.buttons[row].action)
         elif part in ("listing", "history") and row >= 0:
-            self._do(sessions.click_listing if part == "listing" else sessions.click_history, row)
+            self._do(sessions.click, part, row)
         elif part == "bar" or (part == "stage" and self.session.page != "help"):
             self._anchor, self._anchor_place = part, place
             if part == "bar":

@@ -34,11 +34,6 @@ def _meaning(stream: Stream, number: int, _: int) -> str:
     return whole_meaning_of(stream, number, LONGEST_MEANING)
 
 
-def forget_meanings() -> None:
-    """Forget the texts, and the streams, of the rows that were listed last."""
-    _meaning.cache_clear()
-
-
 def whole_meaning_of(stream: Stream, number: int, most: int = sys.maxsize) -> str:
     """The right side of an instruction's listing in one line, cut after `most` characters."""
     item = stream.item(number)

@@ -64,9 +64,6 @@ class Replay:
         self.display.scan_out.shown_table = start.scan_out.shown_table
         self._preparing = self._prepare()
 
-    def __repr__(self) -> str:
-        return f"Replay(instruction {self.number} of {len(self.stream)}, {len(self._states)} states)"
-
     @property
     def prepared(self) -> int:
         """The number of instructions up to which states are kept."""

@@ -19,12 +19,13 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.inspection import histories, listing
+from ramtek_emu.inspection import histories
 from ramtek_emu.inspection.histories import EntryRange, Search, Selection, Write, is_single
 from ramtek_emu.inspection.listing import moved, next_with, rows_from
 from ramtek_emu.inspection.replay import Replay
 from ramtek_emu.inspection.running_host import MOST_BYTES, PIECE_SECONDS, RunningHost
-from ramtek_emu.instruction_set.disassembler import IN_HEXADECIMAL
+from ramtek_emu.instruction_set.disassembler import operand_text
+from ramtek_emu.instruction_set.table import OPERANDS
 from ramtek_emu.memory.scan_orders import Point, Window
 from ramtek_emu.video.view import pixel_at
 
@@ -159,7 +160,6 @@ def _served(session: Inspection, host: RunningHost) -> Inspection:
     host.serve(not session.is_following)
     if session.replay is not host.replay:
         message = f"the instructions took {MOST_BYTES >> 20} MB of memory: they are counted from here on"
-        listing.forget_meanings()
         session = tell(replace(select(session, None), replay=host.replay, number=0, target=0), message)
     return _followed(session) if session.is_following and session.length != session.number else session
 
@@ -295,16 +295,11 @@ def turn_to(session: Inspection, page: str) -> Inspection:
     return replace(session, page="" if session.page == page else page, pointed=None)
 
 
-def click_listing(session: Inspection, row: int) -> Inspection:
-    """Go to the instruction in a row of the listing."""
-    rows = shown_rows(session)
-    return go(session, rows[row].start) if row < len(rows) else session
-
-
-def click_history(session: Inspection, row: int) -> Inspection:
-    """Go to the instruction in a row of the history."""
-    writes = shown_writes(session)
-    return go(session, writes[row].number) if row < len(writes) else session
+def click(session: Inspection, panel: str, row: int) -> Inspection:
+    """Go to the instruction in a row of the "listing" or of the "history"."""
+    listed = [instructions.start for instructions in shown_rows(session)]
+    numbers = listed if panel == "listing" else [write.number for write in shown_writes(session)]
+    return go(session, numbers[row]) if row < len(numbers) else session
 
 
 def shown_rows(session: Inspection) -> list[range]:
@@ -354,12 +349,10 @@ def parameter_texts(display: Ramtek9300) -> dict[str, str]:
 
 
 def value_text(name: str, value: Any) -> str:
-    """The text of a parameter: masks and bits in hexadecimal, a window by its corners."""
+    """The text of a parameter, as operands are listed; the numbers of a conic in decimal."""
     numbers = value if isinstance(value, tuple) else (int(value),)
-    if name in IN_HEXADECIMAL and name != "conic":
-        return ",".join(f"0x{number:04X}" for number in numbers)
-    if isinstance(value, Window):
-        return "{},{}..{},{}".format(*value)
+    if name in OPERANDS and name != "conic":
+        return operand_text(name, tuple(number & 0xFFFF for number in numbers))
     return ",".join(map(str, numbers))
 
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ramtek_emu.arrays import AnyArray, Bytes, Indices, Words
+from ramtek_emu.arrays import AnyArray, Indices, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import lengths, words_that_begin
 from ramtek_emu.instruction_set.disassembler import ListingItem, item_of
@@ -33,9 +33,6 @@ class Stream:
         """The number of whole instructions."""
         return self._count
 
-    def __repr__(self) -> str:
-        return f"Stream({len(self)} instructions, {self._word_count} words)"
-
     @property
     def words(self) -> Words:
         """All words, uint16, with the words of an incomplete instruction at the end."""
@@ -45,11 +42,6 @@ class Stream:
     def ends(self) -> Indices:
         """The words up to the end of each instruction, (instructions + 1,) int64; `ends[0]` is 0."""
         return self._ends[: self._count + 1]
-
-    @property
-    def opcodes(self) -> Bytes:
-        """The high byte of the first word of each instruction, (instructions,) uint8."""
-        return (self._words[self.ends[:-1]] >> 8).astype(np.uint8)
 
     def append(self, words: Words) -> None:
         """Append words; an instruction may be cut anywhere.

@@ -40,7 +40,7 @@ from ramtek_emu.instruction_set.table import (
 MOST_HEAD: Final = 64
 """An upper bound on the words of an instruction before its data."""
 FEW: Final = 24
-"""So many illegal words are looked at one by one, and further words at once."""
+"""The words after an illegal word that are looked at first; then twice as many, and so on."""
 CONIC: Final = OPERAND_BITS["conic"]
 
 
@@ -164,11 +164,7 @@ def missing_coefficients(numbers: memoryview[int], place: int, operands: int, en
 def end_of_row(words: Words, place: int, extended: bool) -> int:
     """The end of the row of illegal words that begins at `place`."""
     legal = words_that_begin(extended)
-    step = FEW
-    for end in range(place + 1, min(place + step, len(words))):
-        if legal[words.item(end)]:
-            return end
-    end = min(place + step, len(words))
+    end, step = place + 1, FEW
     while end < len(words):
         found = legal[words[end : end + step]]
         if found.any():

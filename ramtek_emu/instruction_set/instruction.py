@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Words
-from ramtek_emu.checks import is_whole
+from ramtek_emu.checks import checked_coordinate
 from ramtek_emu.errors import InstructionError
 from ramtek_emu.instruction_set.table import (
     FORMAT_OF_NAME,
@@ -104,9 +104,4 @@ def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
         raise InstructionError(
             f"{name} must be {OPERANDS[name].words} numbers, not {len(numbers)}; give all of them"
         )
-    for number in numbers:
-        if not is_whole(number) or not -0x8000 <= number <= 0xFFFF:
-            raise InstructionError(
-                f"{name} must be whole numbers from -32768 to 65535, not {number!r}; round or clip it"
-            )
-    return tuple([int(number) & 0xFFFF for number in numbers])
+    return tuple([checked_coordinate(number, name) & 0xFFFF for number in numbers])

@@ -24,12 +24,6 @@ class Key(NamedTuple):
     repeated: bool = False
     """Whether the key was down already, so that this is a repeat."""
 
-    @property
-    def as_typed(self) -> Key:
-        """The key without Ctrl and Alt if it types a character with both: Windows reports AltGr as both."""
-        types_a_sign = self.control and self.alt and self.text.isprintable() and self.text != ""
-        return self._replace(control=False, alt=False) if types_a_sign else self
-
 
 class Release(NamedTuple):
     """The release of a key."""
@@ -79,7 +73,10 @@ class InputQueue:
     def add(self, added: Input) -> None:
         """Add an input, and drop the waiting inputs that it replaces. Marks a key that is a repeat."""
         if isinstance(added, Key):
-            added = added._replace(repeated=added.name in self._down).as_typed
+            if added.control and added.alt and added.text.isprintable() and added.text:
+                # Windows reports AltGr as Ctrl and Alt.
+                added = added._replace(control=False, alt=False)
+            added = added._replace(repeated=added.name in self._down)
             self._down.add(added.name)
             if added.repeated:
                 self._drop_repeats(added.name)

@@ -37,17 +37,6 @@ KEYS: Final = (
 """The keys of a window, and the mouse as the joystick, with their actions."""
 
 
-def write_message(pixels: PackedColors, message: str) -> None:
-    """Write a message on the last lines of a field; a message that is too long ends in two periods."""
-    lines, elements = pixels.shape
-    size = max(1, elements // 640)
-    most = (elements // size - 2 * MARGIN) // ADVANCE
-    shown = message if len(message) <= most else f"{message[: most - 2]}.."
-    bottom = pixels[max(0, lines - MESSAGE_LINES * size) :]
-    bottom[...] = BLACK
-    write(bottom, shown, MARGIN * size, (MESSAGE_LINES - CELL_LINES) // 2 * size, size=size)
-
-
 class Overlay:
     """A page over the field, and a message for a while."""
 
@@ -75,11 +64,19 @@ class Overlay:
         self.page = "" if self.page == page else page
 
     def draw(self, pixels: PackedColors, colors: PackedColors, title: str) -> None:
-        """Draw over the pixels of a field, (lines, elements); `colors` are the colors of all words."""
+        """Draw over the pixels of a field, (lines, elements); `colors` are the colors of all words.
+
+        The message is on the last lines. If it is too long, it ends in two periods.
+        """
         lines, elements = pixels.shape
         if self.page == PAGES["f1"]:
             pixels[...] = help_page(lines, elements, title, KEYS)
         elif self.page:
             pixels[...] = entries_page(colors, lines, elements)
-        if self.message:
-            write_message(pixels, self.message)
+        if message := self.message:
+            size = max(1, elements // 640)
+            most = (elements // size - 2 * MARGIN) // ADVANCE
+            shown = message if len(message) <= most else f"{message[: most - 2]}.."
+            bottom = pixels[max(0, lines - MESSAGE_LINES * size) :]
+            bottom[...] = BLACK
+            write(bottom, shown, MARGIN * size, (MESSAGE_LINES - CELL_LINES) // 2 * size, size=size)

@@ -36,6 +36,7 @@ from ramtek_emu.monitor.input_queue import Key as Key
 from ramtek_emu.monitor.input_queue import Pointer as Pointer
 from ramtek_emu.monitor.overlay import PAGES, Overlay
 from ramtek_emu.video.scan_out import turned
+from ramtek_emu.writing import PNG, write_numbered
 
 if TYPE_CHECKING:
     from ramtek_emu.films import TimedFilm
@@ -103,7 +104,8 @@ class Monitor:
         self.refreshed = 0
         """The number of times that the field was shown; it never decreases."""
         self._caption = caption
-        self._glass = Glass((self.source.elements, self.source.lines), fit)
+        self.glass = Glass((self.source.elements, self.source.lines), fit)
+        """The window's pixels, its clipboard, and whether the field fills it."""
         self._shown: tuple[object, ...] | None = None
 
     @property
@@ -119,7 +121,7 @@ class Monitor:
         display.joystick.move_to(*self._display.joystick.position)
         display.scan_out.shown_table = self._display.scan_out.shown_table
         self._display = display
-        self._glass.forget_shown()
+        self.glass.forget_shown()
 
     @property
     def source(self) -> FieldSource:
@@ -127,14 +129,9 @@ class Monitor:
         return self._display.scan_out if self._source is None else self._source
 
     @property
-    def fit(self) -> bool:
-        """Whether the field fills the window instead of being a whole multiple."""
-        return self._glass.fit
-
-    @property
     def is_open(self) -> bool:
         """Whether the window is open."""
-        return self._glass.is_open
+        return self.glass.is_open
 
     @property
     def is_at_rest(self) -> bool:
@@ -154,21 +151,21 @@ class Monitor:
     def _set_title(self, message: str = "") -> None:
         """Show the caption, whether a film is recorded, and a message in the title bar."""
         recording = "recording" if self._film is not None else ""
-        self._glass.set_title(" - ".join(part for part in (self._caption, recording, message) if part))
+        self.glass.set_title(" - ".join(part for part in (self._caption, recording, message) if part))
 
     def open(self) -> None:
         """Open the window; NoScreenError if there is no screen."""
-        self._glass.open(self.full_screen)
+        self.glass.open(self.full_screen)
         self._set_title()
 
     def close(self) -> None:
         """Close the window without asking. A film is saved, and a message on stderr has its path."""
-        self._glass.close()
+        self.glass.close()
         if self._film is not None:
             report(self._end_film(self._film))
 
     def _to_be_shown(self) -> tuple[object, ...]:
-        return self.source.stamp, self._glass.stamp, self.overlay.stamp
+        return self.source.stamp, self.glass.stamp, self.overlay.stamp
 
     def show_message(self, message: str) -> None:
         """Show a message in the title bar of the window, or over the field in full screen."""
@@ -194,7 +191,7 @@ class Monitor:
         After an input that changes the field, further inputs wait until the field was shown. Returns whether
         the window is still open.
         """
-        self._glass.collect(self.input, 0 if self.input else wait)
+        self.glass.collect(self.input, 0 if self.input else wait)
         before = self._to_be_shown() if self.is_open else ()
         while self.is_open and self.input and self._to_be_shown() == before:
             self.handle(self.input.take())
@@ -214,7 +211,7 @@ class Monitor:
         hides_mouse = any(cursor.is_visible for cursor in driven)
         table = self.display.scan_out.table()
         draw_over = partial(self.overlay.draw, colors=table, title=self._caption)
-        self._glass.show(self.source, draw_over if any(self.overlay.stamp) else None, hides_mouse)
+        self.glass.show(self.source, draw_over if any(self.overlay.stamp) else None, hides_mouse)
         if self._film is not None:
             self._film.show(self.source.field(), time.monotonic())
             if self._film.is_full:
@@ -223,18 +220,23 @@ class Monitor:
     def toggle_full_screen(self) -> None:
         """Switch to full screen, or back to a window of the previous size."""
         self.full_screen = not self.full_screen
-        self._glass.set_full_screen(self.full_screen)
+        self.glass.set_full_screen(self.full_screen)
 
     def toggle_fit(self) -> None:
         """Let the field fill the window, or show it at the largest whole multiple again."""
-        self._glass.fit = not self._glass.fit
-        self.tell("the picture fills the window" if self.fit else "the picture at a whole multiple")
+        self.glass.fit = not self.glass.fit
+        self.tell("the picture fills the window" if self.glass.fit else "the picture at a whole multiple")
 
-    def screenshot(self) -> Path:
-        """Save the field under the next free number, never over a file; OutputError or WriteError."""
-        from ramtek_emu.png import save_numbered
+    def screenshot(self) -> None:
+        """Save the field under the next free number, without a message on it, and show its path."""
+        from ramtek_emu.png import png_bytes
 
-        return save_numbered(self.source.field(), self.screenshots, self.file_name)
+        self.tell("")
+        field = png_bytes(self.source.field())
+        try:
+            self.tell(f"saved {write_numbered(field, self.screenshots, self.file_name, PNG)}")
+        except RamtekError as refusal:
+            self.tell(str(refusal))
 
     def toggle_recording(self) -> None:
         """Begin a film with the field that is shown; or end it, save it, and show its path."""
@@ -250,36 +252,20 @@ class Monitor:
     def _end_film(self, film: TimedFilm) -> str:
         """End and save the film under the next free number; returns a sentence with its path.
 
-        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files, or
-        else to the home folder.
+        A film that cannot be saved in the folder of screenshots goes to the folder of temporary files.
         """
         from ramtek_emu.films import FILM
-        from ramtek_emu.writing import write_numbered
 
         self._film = None
         fields, data, reason = film.fields, film.end(time.monotonic()), ""
-        # Without a folder for temporary files, or a home, asking for it raises an error.
-        folders: tuple[Callable[[], str | Path], ...] = (
-            lambda: self.screenshots,
-            tempfile.gettempdir,
-            Path.home,
-        )
-        for folder in folders:
+        for folder in (self.screenshots, None):
             try:
-                path = write_numbered(data, Path(folder()), self.file_name, FILM)
-            except (RamtekError, OSError, RuntimeError) as refusal:
+                path = write_numbered(data, folder or Path(tempfile.gettempdir()), self.file_name, FILM)
+            except OSError as refusal:
                 reason = reason or f"{refusal}; "
                 continue
             return f"{reason}saved {path}, {fields:,} {'field' if fields == 1 else 'fields'}"
         return f"{reason}the film is lost: no folder could take it"
-
-    def copy(self, text: str) -> bool:
-        """Put a text into the clipboard; returns False if the screen has none, or the window is closed."""
-        return self._glass.copy(text)
-
-    def paste(self) -> str:
-        """The text in the clipboard; empty if there is none."""
-        return self._glass.paste()
 
     def tell(self, message: str) -> None:
         """Show a message to the user; "" removes the last message."""
@@ -322,7 +308,7 @@ class Monitor:
         shortcuts |= {"return": self.toggle_full_screen} if key.alt else {}
         shortcuts |= {"escape": self.toggle_full_screen} if self.full_screen else {}
         shortcuts |= {"q": self.ask_to_close} if key.control else {}
-        pages: dict[str, Callable[[], object]] = {"f12": self._tell_of_screenshot}
+        pages: dict[str, Callable[[], object]] = {"f12": self.screenshot}
         pages |= {name: partial(self.overlay.turn_to, page) for name, page in PAGES.items()}
         pages |= {"f2": lambda: self.tell(turned(self.display.scan_out))} if self.on_key is None else {}
         if key.name in MODIFIERS:
@@ -333,14 +319,6 @@ class Monitor:
             self.overlay.page = ""
         elif not key.repeated and (run := (shortcuts | pages).get(key.name)):
             run()
-
-    def _tell_of_screenshot(self) -> None:
-        """Take a screenshot, without a message on it, and show its path."""
-        self.tell("")
-        try:
-            self.tell(f"saved {self.screenshot()}")
-        except RamtekError as refusal:
-            self.tell(str(refusal))
 
     def handle_pointer(self, pointer: Pointer) -> None:
         """Move the joystick and set its switches, unless a program's page is shown; call `on_pointer`."""

@@ -20,7 +20,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ramtek_emu.arrays import Colors, Dots, Indices, PackedColors, Words
+from ramtek_emu.arrays import Colors, Dots, PackedColors, Words
 from ramtek_emu.configuration import Configuration, EntryFormat
 from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, SHAPE_SIZE, VISIBLE, Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
@@ -151,11 +151,16 @@ class ScanOut:
 
     def scan_out_into(self, pixels: PackedColors) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
-        if self._beam is not None and not self.shown_table:
-            self._finish_field(self._beam, pixels)
-        else:
+        if self._beam is None or self.shown_table:
             self._update_indices()
             self.table().take(self._indices, out=pixels, mode="wrap")
+        else:
+            for _ in self.follow_beam():
+                pass
+            # Lines below the beam show the memories as they are now; in the retrace, all lines do.
+            line = self._beam.line if self._beam.line < self.lines else 0
+            pixels[:line] = self._monitor_image[:line]
+            self._paint(line, self.lines, pixels)
         self._draw_cursors(pixels)
 
     def scan_out_changes_into(
@@ -174,7 +179,10 @@ class ScanOut:
         self._update_indices()
         runs = [mark.lines for mark in set(last.marks) ^ set(stamp.marks)]
         if last.entries != stamp.entries:
-            runs.append(self._lines_showing(self._lookup_table.entries_written_since(last.entries)))
+            # The lines from the first to the last that show an entry that was written; all lines if unknown.
+            entries = self._lookup_table.entries_written_since(last.entries)
+            is_plain = self._words == self._lookup_table.size and self._indices_of[1] == PLAIN_VIEW
+            runs.append(self._lines_with(*entries) if entries and is_plain else (0, self.lines))
         changed = united(runs, self.lines)
         for first, end in changed:
             self.table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
@@ -207,34 +215,23 @@ class ScanOut:
             if self._painted < beam.lines_done:
                 yield
 
-    def _finish_field(self, beam: Beam, pixels: PackedColors) -> None:
-        # Lines below the beam show the memories as they are now; in the retrace, all lines do.
-        for _ in self.follow_beam():
-            pass
-        line = beam.line if beam.line < self.lines else 0
-        pixels[:line] = self._monitor_image[:line]
-        self._paint(line, self.lines, pixels)
-
     def _paint(self, first: int, last: int, pixels: PackedColors) -> None:
         indices = np.empty((last - first, self.elements), np.intp)
-        self._copy_shown(indices, first)
+        copy_shown(indices, first, self._frame_buffer.words, self._parameters, self.lines)
         self._own_table().take(indices, out=pixels[first:last], mode="wrap")
 
-    def _copy_shown(self, indices: Indices, first: int) -> None:
-        copy_shown(indices, first, self._frame_buffer.words, self._parameters, self.lines)
-
     def _marks(self) -> tuple[Mark, ...]:
+        """The marks of the visible cursors, without blinking cursors while those are hidden."""
         blink_is_on = self.blink_is_on if self._beam is None else self._beam.blink_is_on
-        return marks(self._cursors, blink_is_on)
+        return tuple([
+            Mark(number, cursor.element, cursor.line, self._cursors.shape_changes)
+            for number, cursor in enumerate(self._cursors.all)
+            if cursor.state & VISIBLE and (blink_is_on or not cursor.state & BLINK)
+        ])  # fmt: skip
 
     def _draw_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
         for mark in self._marks():
             draw(pixels, mark, self._cursors[mark.number].shape, first_line)
-
-    def _lines_showing(self, run: Run | None) -> Run:
-        """The lines from the first to the last that show an entry of a range; all lines if unknown."""
-        is_plain = self._words == self._lookup_table.size and self._indices_of[1] == PLAIN_VIEW
-        return self._lines_with(*run) if run and is_plain else (0, self.lines)
 
     def _update_indices(self) -> None:
         # This is `view_of` without the call, which would take a fiftieth of a scan-out with cold caches.
@@ -248,7 +245,7 @@ class ScanOut:
         if view == PLAIN_VIEW:
             self._indices[...] = self._frame_buffer.words[: self.lines, : self.elements]
         else:
-            self._copy_shown(self._indices, 0)
+            copy_shown(self._indices, 0, self._frame_buffer.words, self._parameters, self.lines)
 
     @property
     def is_dark(self) -> bool:
@@ -283,15 +280,6 @@ def turned(scan_out: ScanOut) -> str:
     following = {"": "gray", "gray": "gray8", "gray8": ""}
     scan_out.shown_table = name = following[scan_out.shown_table]
     return f"the table {name}" if name else "the display's table"
-
-
-def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
-    """The marks of the visible cursors; blinking cursors are left out unless `blink_is_on`."""
-    return tuple([
-        Mark(number, cursor.element, cursor.line, cursors.shape_changes)
-        for number, cursor in enumerate(cursors.all)
-        if cursor.state & VISIBLE and (blink_is_on or not cursor.state & BLINK)
-    ])  # fmt: skip
 
 
 def draw(pixels: PackedColors, mark: Mark, shape: Dots, first_line: int = 0) -> None:

@@ -97,7 +97,7 @@ def test_an_emulator_that_hangs_is_ended_and_fails() -> None:
     # The first emulator leaves more words in the pipe than it can store.
     for code in ("pass", "os.close(0)", "os.close(1)"):
         hangs = (sys.executable, "-c", f"import os, time; {code}; time.sleep(600)")
-        claim = replace(POINT, ask="0700*200000", replies="")
+        claim = replace(POINT, ask="0700*99999 0700*99999", replies="")
         assert failure_on(claim, hangs, 0.5) == "the emulator did not end in 0.5 s"
 
 

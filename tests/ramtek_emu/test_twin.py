@@ -17,7 +17,7 @@ from tests.ramtek_emu.strategies import SMALL, drawing_instructions
 def test_random_instructions_do_what_the_slow_twin_does(seed: int, sent: list[NDArray[np.uint16]]) -> None:
     picture = np.random.default_rng(seed).integers(0, 4, (9, 13))
     display, twin = Ramtek9300(SMALL), Twin(SMALL)
-    for stream in (instructions.write_image(picture), instructions.initialize(), *sent):
+    for stream in (instructions.write_image(picture), np.array([0x0600], np.uint16), *sent):
         display.send(stream)
         (instruction,) = Decoder(SMALL).feed(stream)
         twin.send(instruction)

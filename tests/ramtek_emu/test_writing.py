@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from ramtek_emu import OutputError, OutputExistsError, Ramtek9300, WriteError, write_snapshot, writing
-from ramtek_emu.png import png_bytes, save_png
-from ramtek_emu.writing import Output, refuse_output, write_atomically
+from ramtek_emu.png import png_bytes
+from ramtek_emu.writing import Output, refuse_output, write_atomically, write_numbered
 
 FIELD = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
 
@@ -23,13 +23,13 @@ def test_saving_again_replaces_the_file_unless_overwrite_is_false(tmp_path: Path
     path.write_bytes(b"old")
     path.chmod(0o640)
     with pytest.raises(OutputExistsError) as refusal:
-        save_png(FIELD, path)
+        write_atomically(path, png_bytes(FIELD), overwrite=False)
     assert str(refusal.value) == (
         f"an output must be a new file, not {path}, which exists; choose another name, or overwrite it"
         " with --force (overwrite=True in Python)"
     )
     assert path.read_bytes() == b"old"
-    save_png(FIELD, path, overwrite=True)
+    write_atomically(path, png_bytes(FIELD), overwrite=True)
     assert path.read_bytes() == png_bytes(FIELD)
     # A file that is replaced keeps its permissions.
     assert path.stat().st_mode & 0o777 == 0o640
@@ -40,7 +40,7 @@ def test_saving_through_a_link_keeps_the_link(tmp_path: Path) -> None:
     target, link = tmp_path / "target.png", tmp_path / "link.png"
     target.write_bytes(b"old")
     link.symlink_to(target)
-    save_png(FIELD, link, overwrite=True)
+    write_atomically(link, png_bytes(FIELD), overwrite=True)
     assert link.is_symlink()
     assert target.read_bytes() == png_bytes(FIELD)
 
@@ -52,7 +52,7 @@ def test_a_file_system_without_links_gets_the_picture_all_the_same(
         raise OSError(1, "no links here")
 
     monkeypatch.setattr(os, "link", refuse)
-    save_png(FIELD, tmp_path / "field.png")
+    write_atomically(tmp_path / "field.png", png_bytes(FIELD), overwrite=False)
     assert os.listdir(tmp_path) == ["field.png"]
 
 
@@ -65,7 +65,7 @@ def test_after_a_failed_write_the_old_file_is_whole(tmp_path: Path, monkeypatch:
 
     monkeypatch.setattr(os, "fsync", full_disk)
     with pytest.raises(WriteError, match="no space left on device"):
-        save_png(FIELD, path, overwrite=True)
+        write_atomically(path, png_bytes(FIELD), overwrite=True)
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["field.png"]
 
@@ -189,3 +189,9 @@ def test_paths_of_the_same_file_are_found(tmp_path: Path, monkeypatch: pytest.Mo
     (tmp_path / "a.png").touch()
     os.link("a.png", "hard")
     assert writing.same_outputs(("hard", "a.png")) == ("hard", "a.png")
+
+
+def test_a_number_whose_name_is_in_use_by_anything_is_skipped(tmp_path: Path) -> None:
+    (tmp_path / "a-0001.png").mkdir()
+    (tmp_path / "a-0002.png").symlink_to("nowhere")
+    assert write_numbered(b"new", tmp_path, "a", ".png").name == "a-0003.png"

@@ -210,7 +210,7 @@ def test_a_picture_is_sent_once_and_a_recoloring_loads_the_table_alone() -> None
 
     # After the last write of the picture no instruction writes a pixel, and an entry of the body is loaded.
     before = int(np.searchsorted(stream.ends, whole))
-    assert set(stream.opcodes[before:].tolist()) == {LOAD}
+    assert set((stream.words[stream.ends[before:-1]] >> 8).tolist()) == {LOAD}
     assert finished(next_change(replay, display.frame_buffer.window, before)) is None
     body = studio.level_ranges["body"]
     line, element = np.argwhere((display.words >= body.first) & (display.words <= body.last))[0].tolist()

@@ -24,7 +24,7 @@ from autocolor.batches.outputs import (
     thumbnail,
 )
 from autocolor.batches.table import variants_of
-from ramtek_emu.png import save_png
+from ramtek_emu.png import png_bytes
 
 
 @given(st.integers(1, 40), st.integers(1, 40), st.integers(0, 99))
@@ -104,7 +104,7 @@ def test_the_thumbnail_of_a_file_is_that_of_its_colors(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     colors = np.random.default_rng(1).integers(0, 256, (30, 40, 3), np.uint8)
-    save_png(colors, tmp_path / "a.png")
+    (tmp_path / "a.png").write_bytes(png_bytes(colors))
     small = read_thumbnail(str(tmp_path / "a.png"), Box(20, 20))
     assert small is not None
     assert (small == thumbnail(colors, Box(20, 20))).all()

@@ -48,7 +48,7 @@ def test_a_scene_is_shown_until_the_window_is_closed(folder: Path, run: Run, mon
     monitor = monitors[1]
     assert monitor.caption == "autocolor - scene - [front.low] - F1: help; Tab or the right edge: the menu"
     assert not monitor.full_screen
-    assert not monitor.fit
+    assert not monitor.glass.fit
     assert monitor.display.words.any()
 
 
@@ -60,7 +60,7 @@ def test_what_is_set_and_options_of_the_window_reach_it(folder: Path, run: Run, 
     monitors[0].script = staticmethod(script)
     settings = ("--set", "background=#102030", "--set", "parts.side.stage=true")
     assert run("view", "two.obj", "--up", "y", "--full-screen", "--fit", *settings).code == 0
-    assert (monitors[1].full_screen, monitors[1].fit) == (True, True)
+    assert (monitors[1].full_screen, monitors[1].glass.fit) == (True, True)
     # The mesh that was dropped stands as the first one.
     scene = monitors[1].on_drop.__self__.studio.scene
     assert scene.mesh.coordinates[2].tolist() == [1, -1, 0]
@@ -86,7 +86,7 @@ def test_the_input_of_the_window_reaches_the_viewer_and_its_caption_the_window()
     monitor.on_pointer(Pointer(300, 200, "press", 1, 2, control=True))
     viewer.on_pointer.assert_called_once_with(300, 200, "press", 1, 2, False, True)
     assert (monitor.caption, monitor.screenshots) == ("one", viewer.folder)
-    assert viewer.session.clipboard == Clipboard(monitor.copy, monitor.paste)
+    assert viewer.session.clipboard == Clipboard(monitor.glass.copy, monitor.glass.paste)
     for name in ("on_release", "on_drop", "on_close"):
         assert getattr(monitor, name) is getattr(viewer, name)
     assert monitor.on_message is viewer.tell
@@ -149,7 +149,7 @@ def test_the_steps_in_the_window_of_a_studio_are_its_steps(monitors: list[Any]) 
 
     monitors[0].script = staticmethod(script)
     studio.view_window(fit=True)
-    assert (monitors[1].full_screen, monitors[1].fit) == (False, True)
+    assert (monitors[1].full_screen, monitors[1].glass.fit) == (False, True)
     assert studio.scene.equals(before.with_light("key", on=False))
     assert shows_its_scene(studio)
     assert studio.undo(2)

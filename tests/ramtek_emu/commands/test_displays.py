@@ -4,6 +4,7 @@ import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,6 @@ from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, WriteError, instruct
 from ramtek_emu.command_line import ENDING
 from ramtek_emu.commands.displays import Run, running
 from ramtek_emu.commands.ramtek import ramtek
-from ramtek_emu.inspection.inspector import Inspector
 from ramtek_emu.writing import Output
 from tests.ramtek_emu.processes import PipedHost, address_of, ended, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
@@ -186,15 +186,16 @@ def test_the_inspector_hints_at_the_end_of_a_dark_stream_and_with_its_picture(
     path, hints = tmp_path / "outline.ramtek", []
     path.write_bytes(stream(OUTLINE))
 
-    def look(inspector: Inspector, hint: Callable[[float], str]) -> None:
-        replay = inspector.session.replay
+    def look(monitor: Any, run: Run, _: object, may_hint: Callable[[], bool]) -> None:
+        replay = monitor.source.session.replay
         for number in (0, len(replay.stream) - 1, len(replay.stream)):
             replay.go_to(number)
-            hints.append([hint(seconds) for seconds in (1.0, 3.0)][1])
+            given = [may_hint() and run.hint_at_rest(monitor.display, seconds) for seconds in (1.0, 3.0)]
+            hints.append(given[1])
 
-    monkeypatch.setattr("ramtek_emu.inspection.inspector.Inspector.run", look)
+    monkeypatch.setattr("ramtek_emu.commands.inspect.show", look)
     CliRunner().invoke(ramtek, ["inspect", str(path)], catch_exceptions=False)
-    assert hints[:2] == ["", ""]
+    assert hints[:2] == [False, False]
     drawn = CliRunner().invoke(ramtek, ["inspect", str(path), "-o", str(tmp_path / "a.png")])
     assert drawn.stderr.splitlines()[0] == hints[2] != ""
 

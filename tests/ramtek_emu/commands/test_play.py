@@ -1,8 +1,8 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +11,6 @@ from PIL import Image
 
 from ramtek_emu import (
     MissingInputError,
-    Ramtek9300,
     RamtekError,
     WriteError,
     instructions,
@@ -128,7 +127,7 @@ def test_a_film_that_fails_is_reported_and_the_stream_goes_on(
 
     monkeypatch.setattr(Output, "write", fail)
     monkeypatch.setattr(
-        "ramtek_emu.png.write_atomically", lambda path, data, **_: Path(path).write_bytes(data)
+        "ramtek_emu.display.write_atomically", lambda path, data, **_: Path(path).write_bytes(data)
     )
     played = play(frames, "--film", name, "-o", "end.png")
     assert played.exit_code == 74
@@ -150,10 +149,10 @@ def test_of_a_stream_that_cannot_be_read_to_its_end_the_beginning_is_shown_and_w
             return pieces.pop()
         raise OSError("broken")
 
-    def show(display: Ramtek9300, run: Run, serve_for: Callable[[float], None]) -> None:
+    def show(monitor: Any, run: Run) -> None:
         def has_failed() -> bool:
-            serve_for(0.01)
-            return run.exit_code != 0 and display.words_received == len(FRAMES)
+            monitor.on_tick()
+            return run.exit_code != 0 and monitor.display.words_received == len(FRAMES)
 
         until(has_failed)
 

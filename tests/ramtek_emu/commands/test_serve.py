@@ -223,13 +223,13 @@ def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(
         host = threading.Thread(target=poll, args=(server.address,))
         host.start()
 
-        def serve_for(seconds: float) -> None:
-            server.serve_for(seconds, wait=0.005)
+        def tick() -> None:
+            server.serve_for(0.01, wait=0.005)
             if server.served:
                 os.kill(os.getpid(), signal.SIGTERM)
 
         with running(server.display) as run:
-            show(server.display, run, serve_for, lambda: server.busy)
+            show(Monitor(server.display, on_tick=tick), run, lambda: server.busy)
         host.join(60)
     assert waits == {0}
 
@@ -272,11 +272,11 @@ def test_a_signal_during_service_closes_the_window_afterwards(on_screen: str) ->
     display = Ramtek9300()
     served = 0
 
-    def serve_for(seconds: float) -> None:
+    def tick() -> None:
         nonlocal served
         os.kill(os.getpid(), signal.SIGTERM)
         served += 1
 
     with running(display) as run:
-        show(display, run, serve_for)
+        show(Monitor(display, on_tick=tick), run)
     assert served == 1

@@ -216,8 +216,8 @@ def test_the_window_shows_the_page_after_keys_and_clicks(on_screen: str) -> None
     assert np.array_equal(shown(), page.colors())
     event = pygame.event.Event(pygame.KEYDOWN, key=pygame.K_q, unicode="\x11", mod=pygame.KMOD_LCTRL)
     pygame.event.post(event)
-    opened.run()
+    monitor.run(opened.is_busy)
     assert not monitor.is_open
     # A hint for the user is a message on the page.
-    opened.run(lambda _: "nothing is lit", lambda: bool(opened.session.message))
+    monitor.tell("nothing is lit")
     assert opened.session.message == "nothing is lit"

@@ -32,8 +32,8 @@ STEPS = st.one_of(
     st.tuples(st.just("select"), st.builds(Window, st.just(3), st.just(2), st.integers(3, 12), st.just(8))),
     st.tuples(st.just("select"), st.builds(Window, st.just(3), st.just(2), st.just(3), st.just(2))),
     st.tuples(st.just("select"), st.builds(lambda n: EntryRange(n, n + 1), st.integers(0, 1023))),
-    st.tuples(st.just("click_history"), st.integers(0, 3)),
-    st.tuples(st.just("click_listing"), st.integers(0, 30)),
+    st.tuples(st.just("click"), st.just("history"), st.integers(0, 3)),
+    st.tuples(st.just("click"), st.just("listing"), st.integers(0, 30)),
 )
 
 
@@ -97,7 +97,7 @@ def test_the_history_of_a_pixel_leads_through_the_stream() -> None:
         ["3", "0005", "to", "0007"],
         ["1", "0000", "to", "0005"],
     ]
-    session.click_history(0)
+    session.click("history", 0)
     assert session.state.number == 4
 
 
@@ -164,7 +164,7 @@ def test_equal_polls_are_a_single_row() -> None:
         rows = [" ".join(text_of(line).split()) for line in panels.listing(session.state)]
         assert len(rows) == 6
         assert next(row for row in rows if row.startswith(">")).strip("> ").startswith(marked)
-    session.click_listing(2)
+    session.click("listing", 2)
     assert session.state.number == 2
     stream = session.replay.stream
     assert [moved(stream, *steps) for steps in ((0, 2), (2, 1), (500, 2), (704, -2), (703, -2))] == [
@@ -291,8 +291,8 @@ def test_lists_show_the_rows_around_the_current_instruction() -> None:
     assert seen == [(3, 8), (3, 7), (3, 6), (1, 5), (0, 5)]
     # The rows that are clicked are those that are seen; a row below the last is none.
     numbers = []
-    for click, row in ((session.click_history, 4), (session.click_listing, 6), (session.click_listing, 2)):
-        click(row)
+    for panel, row in (("history", 4), ("listing", 6), ("listing", 2)):
+        session.click(panel, row)
         numbers.append(session.state.number)
     assert numbers == [1, 1, 2]
 

@@ -54,7 +54,7 @@ def test_data_and_operands_are_taken_up_to_their_limits() -> None:
 
 NAMES = ", ".join(OPERANDS)
 WI_BYTES = "the data of WI must be 0 to 65535 bytes, not {}; send them in several instructions"
-START_NUMBERS = "start must be whole numbers from -32768 to 65535, not {}; round or clip it"
+START_NUMBERS = "start must be {}-32768 to 65535, not {}; round or clip it"
 test_what_is_no_instruction = refused(
     call,
     [
@@ -62,9 +62,9 @@ test_what_is_no_instruction = refused(
         (lambda: normal("WI", {}, length=65536), WI_BYTES.format(65536)),
         (lambda: normal("SET", {"x": 1}), f"an operand must be one of {NAMES}, not 'x'; choose one"),
         (lambda: normal("SET", {"start": 5}), "start must be 2 numbers, not 1; give all of them"),
-        (lambda: normal("SET", {"start": (0, 65536)}), START_NUMBERS.format(65536)),
-        (lambda: normal("SET", {"start": (-32769, 0)}), START_NUMBERS.format(-32769)),
-        (lambda: normal("SET", {"start": (0.5, 0)}), START_NUMBERS.format(0.5)),  # type: ignore[dict-item]
+        (lambda: normal("SET", {"start": (0, 65536)}), START_NUMBERS.format("", 65536)),
+        (lambda: normal("SET", {"start": (-32769, 0)}), START_NUMBERS.format("", -32769)),
+        (lambda: normal("SET", {"start": (0.5, 0)}), START_NUMBERS.format("a whole number from ", 0.5)),  # type: ignore[dict-item]
     ],
 )
 

@@ -5,7 +5,7 @@ import pytest
 
 from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.monitor.boxes import BLACK, ORANGE, WHITE, YELLOW, entries_page, help_page, write
-from ramtek_emu.monitor.overlay import KEYS, Overlay, write_message
+from ramtek_emu.monitor.overlay import KEYS, Overlay
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,9 @@ def test_text_is_drawn_in_whole_multiples_and_clipped() -> None:
 def test_a_message_stands_on_the_last_lines_and_ends_in_two_periods_if_it_is_too_long(size: int) -> None:
     for message, shown in (("x" * 78, "x" * 78), ("x" * 79, "x" * 76 + "..")):
         pixels, expected = np.zeros((2, 480 * size, 640 * size), np.uint32)
-        write_message(pixels, message)
+        overlay = Overlay()
+        overlay.message = message
+        overlay.draw(pixels, pixels[0], "")
         expected[464 * size :] = BLACK
         write(expected, shown, 8 * size, 467 * size, size=size)
         assert np.array_equal(pixels, expected)

@@ -21,9 +21,9 @@ from ramtek_emu import (
     Timing,
     instructions,
 )
-from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursors, cross
+from ramtek_emu.memory.cursors import BLINK, VISIBLE, cross
 from ramtek_emu.testing import rasters, streams, words
-from ramtek_emu.video.scan_out import Mark, draw, gray_table, lines_with, marks
+from ramtek_emu.video.scan_out import Mark, draw, gray_table, lines_with
 from tests.ramtek_emu.displays import colored
 from tests.ramtek_emu.strategies import SMALL, cuts, sent_words
 
@@ -333,14 +333,16 @@ def test_the_same_stream_gives_the_same_field_however_it_is_cut(stream: list[int
 
 
 def test_visible_cursors_have_marks() -> None:
-    cursors = Cursors(4)
+    display = Ramtek9300("NCAR_9460")
+    cursors, scan_out = display.cursors, display.scan_out
     cursors.place(0, 5, 6, 0)
     cursors.place(1, 7, 8, VISIBLE)
     cursors.place(3, 9, 10, VISIBLE | BLINK)
-    assert marks(cursors, True) == (Mark(1, 7, 8, 0), Mark(3, 9, 10, 0))
-    assert marks(cursors, False) == (Mark(1, 7, 8, 0),)
+    assert list(scan_out.stamp.marks) == [Mark(1, 7, 8, 0), Mark(3, 9, 10, 0)]
+    scan_out.blink_is_on = False
+    assert list(scan_out.stamp.marks) == [Mark(1, 7, 8, 0)]
     cursors.set_shape(2, np.zeros((1, 4), np.uint8))
-    assert marks(cursors, False) == (Mark(1, 7, 8, 1),)
+    assert list(scan_out.stamp.marks) == [Mark(1, 7, 8, 1)]
 
 
 @pytest.mark.parametrize(("element", "line"), [(20, 50), (0, 0), (39, 99), (60, 50), (20, 130)])
