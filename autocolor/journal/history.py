@@ -286,7 +286,7 @@ class History:
         return not file.is_outdated and file.scene.equals(opened.scene)
 
     def _go(self, after: Timeline) -> None:
-        """Go to a timeline. If it forgets steps that were undone at once, their end is a variant from now on."""
+        """Go to a timeline. If it forgets steps that were undone at once, their end becomes a variant."""
         before, self.timeline = self.timeline, after
         if before.has_jumped and not after.has_jumped:
             end = next(iter(before.to_redo), None)

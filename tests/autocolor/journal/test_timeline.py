@@ -1,4 +1,4 @@
-"""The timeline of a session against its twin: a list of looks and a list of views, each with a present place."""
+"""The timeline of a session against its twin: a list of states and a list of views, and its place in both."""
 
 from __future__ import annotations
 
