@@ -226,7 +226,7 @@ def test_without_a_step_there_is_nothing_to_compare_with(tmp_path: Path) -> None
     )
 
 
-@pytest.mark.parametrize("screen", ["help", "entries", "mapping"])
+@pytest.mark.parametrize("screen", ["help", "entries", "variants"])
 def test_over_a_screen_without_the_picture_the_picture_comes_and_then_the_screen_again(
     hand: Hand, screen: str
 ) -> None:
