@@ -107,8 +107,8 @@ def test_any_steps_lead_where_two_lists_lead(taken: list[tuple[str, Any, Any]]) 
     branches: set[str] = set()
 
     def state_of(opened: Opened) -> State:
-        numbers = round(opened.scene.ambient * 8), round(opened.scene.view.angle / 10)
-        return State(*numbers, places.index(opened.place))
+        look, view = round(opened.scene.ambient * 8), round(opened.scene.view.angle / 10)
+        return State(look, view, places.index(opened.place))
 
     for kind, same_step, what in taken:
         before = deepcopy(twin)
