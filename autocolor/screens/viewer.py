@@ -465,6 +465,11 @@ class Viewer:
         self._show_scene()
         self.session.redo()
 
+    def view_again(self, back: bool) -> None:
+        """Return to the view before, or forward to the view that was left."""
+        self._show_scene()
+        self.edits.view_again(back)
+
     def _show_scene(self) -> None:
         # The step may remove the thing that is dragged or typed into.
         self._mouse.forget()
@@ -687,7 +692,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding(
         (Chord("left", alt=True), Chord("right", alt=True)),
         "the view before, and forward again",
-        lambda viewer, number: viewer.edits.view_again(number == 0),
+        lambda viewer, number: viewer.view_again(number == 0),
         repeats=True,
     ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo(), repeats=True),

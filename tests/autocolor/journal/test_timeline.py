@@ -91,6 +91,7 @@ moves = st.lists(
     max_size=20,
 )
 
+TURNS = [("edit", False, (0, 1)), ("edit", False, (0, 2))]
 EDITS = [("edit", False, (look, 0)) for look in (1, 2, 3)]
 
 
@@ -98,6 +99,8 @@ EDITS = [("edit", False, (look, 0)) for look in (1, 2, 3)]
 # The end of a branch that was left becomes a variant once, although a drag came back and left it again.
 @example([*EDITS, ("undo", None, 2), *[("edit", True, (look, 1)) for look in (2, 1, 3)]])
 @example([*EDITS, ("undo", None, 2), ("redo", None, 2), ("undo", None, 1), ("edit", False, (0, 0))])
+@example([*TURNS, ("view_back", None, 1), ("edit", False, (0, 0)), ("view_back", None, 2)])
+@example([*TURNS, ("view_back", None, 2), ("view_forward", None, 1), ("edit", True, (1, 1))])
 @example([*EDITS, ("undo", None, 3), ("keep", None, 0), ("open", None, (1, 1)), ("show", None, 0)])
 def test_any_steps_lead_where_two_lists_lead(taken: list[tuple[str, Any, Any]]) -> None:
     places = [ScenePlace()]

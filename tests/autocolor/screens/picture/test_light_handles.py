@@ -252,7 +252,7 @@ def test_a_coarse_picture_has_no_marks_until_the_movement_ends(
     hand.drop()
     assert not hand.viewer.studio.is_coarse
     assert yellow(hand)
-    assert hand.viewer.studio.history.to_undo == (before,)
+    assert hand.viewer.studio.history.timeline.views_back == (before.view,)
 
 
 def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and_nothing_else(
