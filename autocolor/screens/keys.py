@@ -52,6 +52,12 @@ def redo_step(viewer: Viewer) -> None:
     redo(viewer.session)
 
 
+def view_again(viewer: Viewer, back: bool) -> None:
+    """Return to the view before, or forward to the view that was left."""
+    viewer.show_scene()
+    viewer.edits.view_again(back)
+
+
 def reopen(viewer: Viewer) -> None:
     """Read the scene's file again, as one step to undo."""
     viewer.show_scene()
@@ -230,7 +236,7 @@ BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding(
         (Chord("left", alt=True), Chord("right", alt=True)),
         "the view before, and forward again",
-        lambda viewer, number: viewer.edits.view_again(number == 0),
+        lambda viewer, number: view_again(viewer, number == 0),
         repeats=True,
     ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: undo_step(viewer), repeats=True),

@@ -1,4 +1,4 @@
-"""The timeline of a session against its twin: lists of looks and of views, each with a present place."""
+"""The timeline of a session against its twin: a list of states and a list of views, and its place in both."""
 
 from __future__ import annotations
 
@@ -91,13 +91,29 @@ moves = st.lists(
     max_size=20,
 )
 
+TURNS = [("edit", False, (0, 1)), ("edit", False, (0, 2))]
 EDITS = [("edit", False, (look, 0)) for look in (1, 2, 3)]
+KEPT = [("keep", None, 0), ("edit", False, (1, 1))]
+
+
+def undone(*steps: int) -> list[tuple[str, Any, Any]]:
+    """Steps to undo at once, or to redo if they are negative."""
+    return [("undo" if number > 0 else "redo", None, abs(number)) for number in steps]
 
 
 @given(moves)
 # The end of a branch that was left becomes a variant once, although a drag came back and left it again.
-@example([*EDITS, ("undo", None, 2), *[("edit", True, (look, 1)) for look in (2, 1, 3)]])
-@example([*EDITS, ("undo", None, 2), ("redo", None, 2), ("undo", None, 1), ("edit", False, (0, 0))])
+@example([*EDITS, *undone(2), *[("edit", True, (look, 1)) for look in (2, 1, 3)]])
+@example([*EDITS, *undone(2, -2, 1), ("edit", False, (0, 0))])
+@example([*EDITS, *undone(1, 1, -2, 1), ("edit", False, (0, 0))])
+@example([*EDITS, *undone(2, -1), ("edit", False, (0, 0)), *undone(1), ("edit", False, (1, 0))])
+# Views are kept by undo, redo and variants, but each place has its own.
+@example([*EDITS, ("edit", False, (3, 2)), *undone(1), ("edit", False, (2, 1)), *undone(-1, 3, -3)])
+@example([*TURNS, ("open", None, (1, 1)), ("edit", False, (2, 2)), *undone(1, 1), ("view_back", None, 1)])
+@example([*TURNS, ("open", None, (1, 1)), ("edit", False, (2, 2)), *undone(2, -1, -1), *TURNS])
+@example([*KEPT, ("show", None, 0), ("open", None, (2, 2)), *KEPT, ("show", None, 0), ("show", None, 1)])
+@example([*TURNS, ("view_back", None, 1), ("edit", False, (0, 0)), ("view_back", None, 2)])
+@example([*TURNS, ("view_back", None, 2), ("view_forward", None, 1), ("edit", True, (1, 1))])
 @example([*EDITS, ("undo", None, 3), ("keep", None, 0), ("open", None, (1, 1)), ("show", None, 0)])
 def test_any_steps_lead_where_two_lists_lead(taken: list[tuple[str, Any, Any]]) -> None:
     places = [ScenePlace()]
@@ -107,8 +123,8 @@ def test_any_steps_lead_where_two_lists_lead(taken: list[tuple[str, Any, Any]]) 
     branches: set[str] = set()
 
     def state_of(opened: Opened) -> State:
-        numbers = round(opened.scene.ambient * 8), round(opened.scene.view.angle / 10)
-        return State(*numbers, places.index(opened.place))
+        look, view = round(opened.scene.ambient * 8), round(opened.scene.view.angle / 10)
+        return State(look, view, places.index(opened.place))
 
     for kind, same_step, what in taken:
         before = deepcopy(twin)

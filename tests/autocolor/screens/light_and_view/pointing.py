@@ -51,6 +51,7 @@ def place_of(hand: Hand, movable: MovablePoint) -> tuple[int, int]:
 
 
 def is_undone_at_once(hand: Hand, before: Scene) -> bool:
-    """Whether one step of undo brings a scene back, and there is no other step before it."""
+    """Whether one step of undo, or the view before, brings a scene back, and nothing else is before it."""
     studio = hand.viewer.studio
-    return studio.undo() and studio.scene == before and not studio.undo()
+    took = studio.undo() != studio.view_back()
+    return took and studio.scene.equals(before) and not studio.undo() and not studio.view_back()

@@ -253,7 +253,7 @@ def test_a_coarse_picture_has_no_marks_until_the_movement_ends(
     hand.drop()
     assert not hand.viewer.studio.is_coarse
     assert yellow(hand)
-    assert hand.viewer.studio.history.to_undo == (before,)
+    assert hand.viewer.studio.history.timeline.views_back == (before.view,)
 
 
 def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and_nothing_else(
@@ -321,7 +321,7 @@ def test_beside_the_highlight_with_modifiers_or_the_middle_button_a_drag_moves_t
     hand.viewer.on_pointer(element + 30, line + 30, "release", button, **held)
     assert hand.scene.lights == before.lights
     assert hand.scene.view != before.view
-    assert hand.viewer.studio.history.to_undo[-1].view == before.view
+    assert hand.viewer.studio.history.timeline.views_back == (before.view,)
 
 
 def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_is_picked(

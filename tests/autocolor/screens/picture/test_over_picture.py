@@ -119,8 +119,8 @@ def test_a_drag_turns_moves_or_comes_closer(hand: Hand, name: str) -> None:
     viewer.on_pointer(430, 110, "move", 0, 1, **held)
     viewer.on_pointer(430, 110, "release", button, 1, **held)
     assert viewer.studio.scene.view == view_of(before)
-    assert viewer.studio.history.to_undo == (before,)
-    viewer.studio.undo()
+    assert viewer.studio.history.timeline.views_back == (before.view,)
+    viewer.studio.view_back()
     viewer.on_pointer(400, 100, "wheel up", steps=2)
     assert viewer.studio.scene.view == moved(before, wheel_ratio(2))
 
@@ -143,14 +143,14 @@ def fields_of(scene: Scene) -> list[object]:
 
 
 @pytest.mark.parametrize("key", KEYS)
-def test_a_key_edits_lights_paint_or_view_in_one_step(hand: Hand, key: str) -> None:
+def test_a_key_edits_lights_or_paint_in_one_step_or_turns_the_view_once(hand: Hand, key: str) -> None:
     message, after = KEYS[key]
     before = hand.scene
     hand.press(key)
     assert hand.message == message
     assert fields_of(hand.scene) == fields_of(after(before))
-    hand.press("Ctrl+Z")
-    assert hand.scene is before
+    hand.press("Ctrl+Z", "Alt+Left")
+    assert fields_of(hand.scene) == fields_of(before)
 
 
 def test_a_key_holds_the_exposure_and_releases_it(hand: Hand) -> None:
