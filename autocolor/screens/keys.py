@@ -2,26 +2,44 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol
 
 from autocolor.errors import UsageError
+from autocolor.screens.board import Board
 from autocolor.screens.file_actions import read_again, save, save_image
 from autocolor.screens.input import Binding, Chord
-from autocolor.screens.picture.picture_edits import sides_of
-from autocolor.screens.session import PICTURE, SENT
+from autocolor.screens.picture.picture_edits import PictureEdits, sides_of
+from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.screens.steps import compare, end_comparing, redo, undo
 from autocolor.screens.surface.painting import take_paint
 
-if TYPE_CHECKING:
-    from autocolor.screens.viewer import Viewer
+
+class Driven(Protocol):
+    """The system that the keys drive; a viewer."""
+
+    session: Session
+    board: Board
+    edits: PictureEdits
+
+    def show_scene(self) -> None:
+        """Let go of everything, and show the scene."""
+
+    def watch(self) -> None:
+        """Let the picture come in line by line."""
+
+    def escape(self) -> bool:
+        """Take back, close or leave something; returns whether there was anything."""
+
+    def save_screen(self) -> None:
+        """Save what the display shows."""
 
 
-def toggle(viewer: Viewer, screen: str) -> None:
+def toggle(viewer: Driven, screen: str) -> None:
     """Turn to a screen, or back to the picture if it is shown."""
     viewer.session.turn_to(PICTURE if viewer.session.screen == screen else screen)
 
 
-def show_other(viewer: Viewer) -> None:
+def show_other(viewer: Driven) -> None:
     """Show the state to compare with, over the picture."""
     session = viewer.session
     session.compared_from = PICTURE
@@ -31,7 +49,7 @@ def show_other(viewer: Viewer) -> None:
     compare(session)
 
 
-def show_present(viewer: Viewer) -> None:
+def show_present(viewer: Driven) -> None:
     """Show the present state again, on the screen from which the other state was asked for."""
     session = viewer.session
     end_comparing(session)
@@ -40,31 +58,31 @@ def show_present(viewer: Viewer) -> None:
     session.compared_from = PICTURE
 
 
-def undo_step(viewer: Viewer) -> None:
+def undo_step(viewer: Driven) -> None:
     """Undo the last step."""
     viewer.show_scene()
     undo(viewer.session)
 
 
-def redo_step(viewer: Viewer) -> None:
+def redo_step(viewer: Driven) -> None:
     """Redo the last undone step."""
     viewer.show_scene()
     redo(viewer.session)
 
 
-def view_again(viewer: Viewer, back: bool) -> None:
+def view_again(viewer: Driven, back: bool) -> None:
     """Return to the view before, or forward to the view that was left."""
     viewer.show_scene()
     viewer.edits.view_again(back)
 
 
-def reopen(viewer: Viewer) -> None:
+def reopen(viewer: Driven) -> None:
     """Read the scene's file again, as one step to undo."""
     viewer.show_scene()
     read_again(viewer.session)
 
 
-def take_sample(viewer: Viewer, is_color: bool) -> None:
+def take_sample(viewer: Driven, is_color: bool) -> None:
     """Take the paint of the surface under the pointer, or the color that is seen there.
 
     Raises UsageError if there is none.
@@ -78,7 +96,7 @@ def take_sample(viewer: Viewer, is_color: bool) -> None:
         take_paint(viewer.session, sample.surface)
 
 
-def copy(viewer: Viewer) -> None:
+def copy(viewer: Driven) -> None:
     """Copy the color or the text under the pointer to the clipboard; UsageError if there is none."""
     text, clipboard = viewer.board.text_to_copy, viewer.session.clipboard
     if not text:
@@ -88,7 +106,7 @@ def copy(viewer: Viewer) -> None:
     viewer.session.tell(f"copied {text}")
 
 
-def paste(viewer: Viewer) -> None:
+def paste(viewer: Driven) -> None:
     """Paste the first line of the clipboard's text, without letters that cannot be typed.
 
     Raises UsageError without a clipboard or a text.
@@ -114,7 +132,7 @@ CLOSER: Final = 0.9
 BLEND: Final = 0.05
 """The step of the blend for each press of its keys."""
 
-BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
+BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding((Chord("f1"),), "this help, and back", lambda viewer, _: toggle(viewer, "help")),
     Binding(
         (Chord("f2"),),
