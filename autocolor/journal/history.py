@@ -225,7 +225,7 @@ class History:
 
         Raises UsageError for an unknown name.
         """
-        return self.timeline.moved_to(self.variants[name], keeps_view=True)
+        return self.timeline.moved_to(self.variants[name])
 
     def move(self, way: Way, steps: int = 1) -> None:
         """Move some steps on a way. Raises IndexError if there are not so many."""

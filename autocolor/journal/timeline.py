@@ -57,9 +57,9 @@ class Timeline:
             after = replace(after, views_back=(*self.views_back, before.view), views_forward=())
         return replace(after, present=Opened(scene, self.present.place))
 
-    def moved_to(self, opened: Opened, keeps_view: bool = False) -> Timeline:
-        """A step to another state; with `keeps_view`, in the present view if it is of the same place."""
-        return self._stepped()._at(self._seen(opened) if keeps_view else opened)
+    def moved_to(self, opened: Opened) -> Timeline:
+        """A step to another state, in the present view if it is of the same place."""
+        return self._stepped()._at(opened)
 
     def moved(self, way: Way, steps: int = 1) -> Timeline:
         """The timeline after some steps on a way at once. Raises IndexError if there are not so many."""
@@ -74,32 +74,27 @@ class Timeline:
         present, back, forward = self.present, self.views_back, self.views_forward
         match way:
             case "undo":
-                there = self._at(self._seen(self.to_undo[-1]))
+                there = self._at(self.to_undo[-1])
                 return replace(there, to_undo=self.to_undo[:-1], to_redo=(*self.to_redo, present))
             case "redo":
-                there = self._at(self._seen(self.to_redo[-1]))
+                there = self._at(self.to_redo[-1])
                 return replace(there, to_undo=(*self.to_undo, present), to_redo=self.to_redo[:-1])
             case "view_back":
-                there = self._at(_with_view(present, back[-1]))
+                there = replace(self, present=_with_view(present, back[-1]))
                 return replace(there, views_back=back[:-1], views_forward=(*forward, present.scene.view))
             case "view_forward":
-                there = self._at(_with_view(present, forward[-1]))
+                there = replace(self, present=_with_view(present, forward[-1]))
                 return replace(there, views_back=(*back, present.scene.view), views_forward=forward[:-1])
 
     def _stepped(self) -> Timeline:
         """The timeline after a step that is still to change the present state."""
         return replace(self, to_undo=(*self.to_undo, self.present), to_redo=(), has_jumped=False)
 
-    def _at(self, present: Opened) -> Timeline:
-        """The timeline with another present state; the ways between views end where another place begins."""
-        if present.place is self.present.place:
-            return replace(self, present=present)
-        return replace(self, present=present, views_back=(), views_forward=())
-
-    def _seen(self, opened: Opened) -> Opened:
-        """A state in the present view, if it is of the same place."""
-        is_here = opened.place is self.present.place
-        return _with_view(opened, self.present.scene.view) if is_here else opened
+    def _at(self, opened: Opened) -> Timeline:
+        """The timeline at another state, in the present view; a state of another place has its own view."""
+        if opened.place is self.present.place:
+            return replace(self, present=_with_view(opened, self.present.scene.view))
+        return replace(self, present=opened, views_back=(), views_forward=())
 
 
 def _with_view(opened: Opened, view: View) -> Opened:

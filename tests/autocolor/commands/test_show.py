@@ -117,8 +117,8 @@ def test_a_session_that_is_ended_by_a_signal_is_recovered(
             (state / "sessions" / "again").mkdir()
             shutil.copy(ended / JOURNAL, state / "sessions" / "again")
     history = read_journal(state / "sessions" / "again" / JOURNAL).history
-    assert len(history.to_undo) == 3
-    assert history.to_undo[1].ambient == 0.3
+    assert (len(history.to_undo), len(history.timeline.views_back)) == (1, 2)
+    assert history.scene.ambient == 0.3
 
 
 def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(folder: Path) -> None:

@@ -139,7 +139,7 @@ def test_any_steps_lead_where_two_lists_lead(taken: list[tuple[str, Any, Any]]) 
         elif kind == "open":
             base = None
             places.append(ScenePlace(Source("other.obj")))
-            twin.step(State(*what, len(places) - 1))
+            twin.step(State(what[0], what[1], len(places) - 1))
             history.open(Opened(SCENES[what[0]][what[1]], places[-1]), Source("other.obj"))
         elif kind == "keep":
             kept.append(twin.present)

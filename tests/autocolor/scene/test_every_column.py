@@ -345,7 +345,7 @@ def by_script(scene: Scene, folder: Path, session: Session) -> Scene:
     studio = session.names["studio"]
     assert isinstance(studio, Studio)
     edited = studio.scene
-    studio.undo()
+    studio.take_back()
     return edited
 
 
