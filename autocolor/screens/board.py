@@ -93,7 +93,7 @@ class Board:
         self._sections: dict[str, bool] = {}
         """Whether each section of the present menu is open."""
         self._folded_at, self._folded = Place(-1, -1), ""
-        """Where a section's heading was picked last, and its key."""
+        """Where a widget was picked last, and its key if it is a section, until the pointer moves."""
         self._message: list[Item] = []
         """The message on the page; it covers the screen below it."""
         self._grabbed: Widget | Handle | Screen | None = None
@@ -161,14 +161,15 @@ class Board:
         folds = self._folds.get(self.session.screen, {})
         rows = folded(rows, folds, self._fold, MENU.height - lines_of(last))
         self._sections = {row.label: row.is_open for row in rows if isinstance(row, Section)}
+        if folds:
+            # A section that was folded to make room stays folded.
+            folds.update(self._sections)
         return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
 
     def _fold(self, section: str, is_open: bool) -> None:
-        """Open or fold a section of this menu, and note that it was used last; those above it stay."""
+        """Open or fold a section of this menu, and note that it was used last; the others stay."""
         folds = self._folds.setdefault(self.session.screen, {})
-        names = list(self._sections)
-        for name in names[: names.index(section)]:
-            folds[name] = self._sections[name]
+        folds.update(self._sections)
         folds.pop(section, None)
         folds[section] = is_open
 
@@ -335,6 +336,8 @@ class Board:
 
     def _hover(self, gesture: Gesture) -> None:
         element, line = self._pointer
+        if self._folded_at != self._pointer:
+            self._folded = ""
         if self._comes_and_goes:
             was_open = self._is_open
             if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
@@ -357,13 +360,13 @@ class Board:
         if self._leaves_list() and not MENU.has(element, line):
             # Beside the menu, this pick does no more.
             return
-        if self._folded_at == self._pointer:
+        if self._folded:
             # The second of two clicks at one place must not fall on a row that came there.
             widget = self.layout.lit(self._folded, NOWHERE) or widget
         if widget is not None:
             self._let_go()
-            self._folded_at = self._pointer if isinstance(widget, Section) else Place(-1, -1)
-            self._folded = widget.key
+            self._folded_at = self._pointer
+            self._folded = widget.key if isinstance(widget, Section) else ""
             self.pick_widget(widget, self._pointer)
         elif self.is_covered(element, line):
             return

@@ -121,7 +121,9 @@ def tell_effect(session: Session) -> bool:
     if abs(ratio - 1) > FOLLOWED:
         more = "more" if ratio > 1 else "less"
         hold = partial(hold_ranges, session, before)
-        session.tell(f"exposed again: {more} light looks the same", True, offer=Offer("hold all", hold))
+        done = f"{session.message}; " if session.news_may_go else ""
+        message = f"{done}exposed again: {more} light looks the same"
+        session.tell(message, offer=Offer("hold all", hold))
         return True
     if not looks_equal(before, image):
         return False

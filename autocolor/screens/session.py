@@ -242,8 +242,9 @@ class Session:
 
     @property
     def news_may_go(self) -> bool:
-        """Whether a hint may take the place of the message: it is no warning, and need not stay."""
-        return self.has_news and not (self.news.is_warning or self.news.persistent)
+        """Whether a hint may take the place of the message: it need not stay, and offers nothing."""
+        news = self.news
+        return self.has_news and not (news.is_warning or news.persistent or news.offer)
 
     def shorten_news(self) -> None:
         """Let the message go as soon as it was shown for LEAST_SECONDS."""

@@ -256,7 +256,7 @@ def open_sections(heights: Mapping[str, int], folds: Mapping[str, bool], room: i
 
     `folds` has whether sections are to be open or folded, the last used section at the end. That section and
     the sections above it are as `folds` has them, so that its heading stays in its place; only if they do not
-    fit, those at the top are folded. The sections below are open while there is room, unless `folds` has them
+    fit, the nearest above are folded. The sections below are open while there is room, unless `folds` has them
     folded.
     """
     names = list(heights)
@@ -264,7 +264,7 @@ def open_sections(heights: Mapping[str, int], folds: Mapping[str, bool], room: i
     end = 0 if used is None else names.index(used) + 1
     is_open = [name for name in names[:end] if folds.get(name, False)]
     while len(is_open) > 1 and sum(heights[name] for name in is_open) > room:
-        del is_open[0]
+        del is_open[-2 if is_open[-1] == used else -1]
     for name in names[end:]:
         if folds.get(name, True) and sum(heights[each] for each in (*is_open, name)) <= room:
             is_open.append(name)

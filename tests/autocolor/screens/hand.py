@@ -22,6 +22,7 @@ class Hand:
         self.display = viewer.display
         self.joystick = viewer.display.joystick
         self.steps = 0
+        self.pointer = 0, 0
         viewer.poll()
 
     @property
@@ -46,7 +47,8 @@ class Hand:
 
     def move(self, element: float, line: float) -> None:
         """Move the pointer."""
-        self.joystick.move_to(round(element), round(line))
+        self.pointer = round(element), round(line)
+        self.joystick.move_to(*self.pointer)
         self.viewer.poll()
 
     def click(self, element: float, line: float) -> None:
@@ -109,6 +111,8 @@ class Hand:
             if label == "more":
                 break
             self.pick(folded or "more")
+            # A second click at the same place would fold the section again.
+            self.move(self.pointer[0] + 1, self.pointer[1])
         raise AssertionError(f"{label!r} is not among {[each.label for each in self.viewer.board.widgets()]}")
 
     def choose(self, label: str, name: str) -> None:

@@ -86,6 +86,7 @@ def test_the_edge_opens_the_menu_of_the_picture_and_leaving_or_escape_closes_it(
     else:
         hand.move(MENU.left - 1, 100)
     assert hand.labels == []
+    hand.move(2, 2)
     hand.viewer.tell("")
     assert np.array_equal(hand.display.words, hand.viewer.studio.words)
 
@@ -408,6 +409,7 @@ def test_the_whole_of_a_larger_display_shows_the_picture(tmp_path: Path) -> None
     hand.move(*hand.middle("ambient"))
     assert hand.is_drawn_whole()
     hand.go_to("picture")
+    hand.move(2, 2)
     assert np.array_equal(hand.display.words, hand.viewer.studio.words)
 
 

@@ -410,7 +410,7 @@ def test_a_picture_is_coarse_while_it_moves_and_refined_when_it_rests(
     hand: Hand, wait: Callable[[float], None], by: str
 ) -> None:
     if by == "the wheel":
-        hand.viewer.on_pointer(300, 200, "wheel up")
+        hand.viewer.on_pointer(2, 2, "wheel up")
     else:
         hand.press("left")
         hand.press("left", repeated=True)

@@ -190,13 +190,14 @@ def test_a_used_section_and_those_above_stay_as_they_are_if_they_fit(
     used = [name for name in folds if name in heights][-1:]
     above = names[: names.index(used[0]) + 1] if used else []
     wanted = [name for name in above if folds.get(name, False)]
-    if sum(heights[name] for name in wanted) <= room:
+    if not used or sum(heights[name] for name in wanted) <= room:
         assert is_open & set(above) == set(wanted)
     else:
-        # The sections at the top are folded first, and the used one last.
+        # The nearest above are folded first, and the used section last.
         left = [name for name in above if name in is_open]
-        assert left == wanted[len(wanted) - len(left) :]
-        assert left or not wanted
+        kept = [name for name in left if name not in used]
+        assert kept == wanted[: len(kept)]
+        assert (used[0] in left) == (used[0] in wanted)
     below = [name for name in names if name not in above]
     total = sum(heights[name] for name in is_open)
     for name in below:
@@ -209,7 +210,7 @@ def test_sections_that_nobody_used_are_open_from_the_top() -> None:
     assert open_sections({"a": 10, "b": 10, "c": 10}, {}, 25) == {"a", "b"}
     assert open_sections({"a": 10, "b": 30, "c": 10}, {}, 25) == {"a", "c"}
     assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": True, "b": True}, 20) == {"a", "b"}
-    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": True, "b": True, "c": True}, 20) == {"b", "c"}
+    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": True, "b": True, "c": True}, 20) == {"a", "c"}
     assert open_sections({"a": 10, "b": 10, "c": 10}, {"b": True, "a": False}, 25) == {"b", "c"}
 
 

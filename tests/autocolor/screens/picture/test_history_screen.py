@@ -6,7 +6,7 @@ import pytest
 
 from autocolor.screens.picture.history_screen import BEGIN, MOST_LETTERS, MOST_ROWS, StepRow
 from autocolor.screens.viewer import Viewer
-from autocolor.widgets.items import GRAY, WHITE
+from autocolor.widgets.items import LIGHT_GRAY, WHITE
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.boxes import hint_of
 from tests.autocolor.screens.hand import Hand
@@ -49,7 +49,7 @@ def test_a_click_goes_to_a_step_and_one_on_an_undone_step_goes_forward(tmp_path:
     hand.pick("step 1")
     assert hand.scene is scenes[1]
     assert hand.message == "3 steps undone: fill: intensity 0.51 -> 0.54"
-    assert [row.ink for row in rows_of(hand)] == [WHITE, WHITE, GRAY, GRAY, GRAY]
+    assert [row.ink for row in rows_of(hand)] == [WHITE, WHITE, LIGHT_GRAY, LIGHT_GRAY, LIGHT_GRAY]
     hand.pick("step 3")
     assert hand.scene is scenes[3]
     assert hand.message == "2 steps redone: fill: intensity 0.51 -> 0.53"

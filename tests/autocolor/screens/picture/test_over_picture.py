@@ -55,7 +55,7 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     hand.press("tab")
     hand.viewer.tell("")
     hand.move(*MIDDLE)
-    assert hand.hint == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    assert hand.hint == "ball, paint: drag turns, click chooses, Shift explains"
     hand.move(*BACKGROUND)
     assert hand.hint == hand.viewer.board.screen.help
 
