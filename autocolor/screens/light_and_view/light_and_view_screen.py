@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
 
-import numpy as np
-
 from autocolor.arrays import Words
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
@@ -20,20 +18,24 @@ from autocolor.scene.scene import FRONTS
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.handles import (
     AIM,
+    EYE,
     FLAP,
     LIGHT,
     MovablePoint,
     handles_in,
+    mark_of,
     movable_of,
     point_text,
+    side_of,
 )
-from autocolor.screens.light_and_view.marks import SideItems, drawn_items, flap_marks
-from autocolor.screens.light_and_view.object_lines import ObjectLines, ObjectStrokes, visible_depths
+from autocolor.screens.light_and_view.marks import SideItems, flap_marks
+from autocolor.screens.light_and_view.object_lines import ObjectLines, sampled
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_AREA,
     SIDES,
     OrthographicViews,
+    PointMark,
     ViewSide,
     area_of_picture,
     fitted_views,
@@ -45,17 +47,14 @@ from autocolor.screens.picture.over_picture import camera_rows
 from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
 from autocolor.screens.screen import Cached, Handle, Screen
 from autocolor.screens.session import Session
-from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.widgets.items import (
     GRAY,
-    LIGHT_GRAY,
     NIGHT,
     SLATE,
     WHITE,
     YELLOW,
     Area,
     Item,
-    filled,
     image,
     outline,
     text,
@@ -83,9 +82,6 @@ ANGLE: Final = 5.0
 UNKNOWN: Final = "unknown"
 """The choice of no front."""
 
-LINES_BETWEEN: Final = (Area(251, 0, 252, 463), Area(0, 227, 503, 228))
-"""The lines between the quarters."""
-
 
 class LightAndViewScreen(Screen):
     """The three views, and in the fourth quarter the picture or the mesh as the eye sees it."""
@@ -101,18 +97,24 @@ class LightAndViewScreen(Screen):
         self._sides = {side: SideItems(side) for side in SIDES}
         self._display = DisplayView(session, self._lines)
         self._handles: Cached[list[Handle]] = Cached()
+        self._fitted: Cached[OrthographicViews] = Cached()
         self._views: OrthographicViews | None = None
         self._eye_is_chosen = False
         self._moved: Vector | None = None
         """The point that is being placed. Its coordinate across the view stays."""
         self._has_lines = False
         """Whether lines through that point run across the views."""
+        self._outside: tuple[PointMark, tuple[float, float]] | None = None
+        """The arrow at the edge that was grabbed, and the position of its point; None for a point inside."""
 
     @property
     def views(self) -> OrthographicViews:
         """The scale and the middle of the three views."""
         if self._views is None:
-            self._views = fitted_views(shown_points(self.session.scene))
+            scene = self.session.scene
+            self._views = self._fitted.of(
+                lambda: fitted_views(scene.object_coordinates), scene.mesh, scene.parts
+            )
         return self._views
 
     @property
@@ -132,19 +134,21 @@ class LightAndViewScreen(Screen):
     def leave(self) -> None:
         self.release()
 
-    # Items.
+    # How it looks.
+
+    def base(self) -> Words | int:
+        return self._lines.page(self.session.scene, self.views)
+
+    def idle(self) -> bool:
+        return self._lines.find_next(self.session.scene, self.views)
 
     def items(self) -> Sequence[Item]:
         scene, views, chosen = self.session.scene, self.views, self.chosen
         target, moved = target_of(scene), self._moved if self._has_lines else None
-        items = [*(filled(area, SLATE) for area in LINES_BETWEEN), *self._display.items()]
-        for side, side_items in self._sides.items():
-            strokes = self._lines.of_side(scene, views, side)
-            items += side_items.items(views, scene, target, strokes, chosen, moved)
+        items = self._display.items()
+        for side_items in self._sides.values():
+            items += side_items.items(views, scene, target, chosen, moved)
         return items
-
-    def idle(self) -> bool:
-        return self._lines.leave_out_hidden(self.session.scene) or self._display.leave_out_hidden()
 
     # Widgets and handles.
 
@@ -184,7 +188,14 @@ class LightAndViewScreen(Screen):
     def hold(self, handle: Handle) -> None:
         movable = movable_of(handle)
         self.choose(movable.light)
-        self._moved = movable.point_in(self.session.scene, self.views)
+        scene, views = self.session.scene, self.views
+        self._moved = movable.point_in(scene, views)
+        self._outside = None
+        if movable.what in (EYE, LIGHT) and self._moved is not None:
+            side = side_of(movable)
+            mark = mark_of(movable, side, scene, views)
+            if mark.away is not None:
+                self._outside = mark, views.position(side, self._moved)
         self._has_lines = movable.what != FLAP
 
     def release(self) -> None:
@@ -192,9 +203,14 @@ class LightAndViewScreen(Screen):
 
     def place(self, handle: Handle, element: int, line: int) -> None:
         movable, session, views = movable_of(handle), self.session, self.views
-        side = next(each for each in SIDES if each.name == movable.side)
+        side = side_of(movable)
         area = side.area
-        if session.moving:
+        if session.moving and self._outside is not None:
+            # The arrow follows the pointer as far as it points to a light or an eye outside.
+            mark, (start, start_line) = self._outside
+            element = round(start + mark.ratio * (element - mark.element))
+            line = round(start_line + mark.ratio * (line - mark.line))
+        elif session.moving:
             element = min(max(element, area.left), area.right)
             line = min(max(line, area.top), area.bottom)
         elif not area.has(element, line):
@@ -324,10 +340,7 @@ class DisplayView:
         self._session = session
         self._lines = lines
         self.shown = PICTURE
-        self._picture: Cached[Item] = Cached()
-        self._mesh: Cached[list[Item]] = Cached()
-        self._visible: VisiblePoints | None = None
-        """The visible points by which hidden edges were left out last."""
+        self._item: Cached[Item] = Cached()
 
     @property
     def area(self) -> Area:
@@ -342,43 +355,13 @@ class DisplayView:
     def items(self) -> list[Item]:
         """The items of the quarter."""
         area = self.area
+        studio, scene = self._session.studio, self._session.scene
         title = text("view", PICTURE_AREA.left + 8, PICTURE_AREA.top + 4, GRAY)
-        frame = outline(area.inset(-1), SLATE)
-        words = self._session.studio.words
+        words = studio.words
         if self.shown == MESH:
-            return [title, frame, *self._mesh_items(area)]
-        return [title, frame, self._picture.of(lambda: image(smaller(words, area), *area[:2]), words)]
-
-    def _mesh_items(self, area: Area) -> list[Item]:
-        scene, points = self._session.scene, self._session.studio.sight.points
-        is_known = self._visible is points
-
-        def items() -> list[Item]:
-            visible = visible_depths(points) if is_known else None
-            strokes: ObjectStrokes = self._lines.of_eye(scene, area, visible)
-            words = (SLATE, GRAY, LIGHT_GRAY)
-            return drawn_items({word: [each] for word, each in zip(words, strokes, strict=True)})
-
-        return self._mesh.of(items, scene.mesh, scene.parts, scene.view, is_known)
-
-    def leave_out_hidden(self) -> bool:
-        """Leave out the hidden edges of the mesh; returns False if that is done, or the mesh is not shown."""
-        points = self._session.studio.sight.points
-        if self.shown != MESH or self._visible is points:
-            return False
-        self._visible = points
-        return True
-
-
-def smaller(words: Words, area: Area) -> Words:
-    """The words of a picture at the size of an area: each is the pixel at the middle of its place."""
-    lines, elements = (
-        (2 * np.arange(size) + 1) * count // (2 * size)
-        for size, count in zip((area.height, area.width), words.shape, strict=True)
-    )
-    # Twice `take` costs a seventh of indexing by both.
-    small: Words = words.take(lines, axis=0).take(elements, axis=1)
-    return small
+            words = self._lines.of_points(scene, studio.sight.points, area)
+        small = self._item.of(lambda: image(sampled(words, area.height, area.width), *area[:2]), words)
+        return [title, outline(area.inset(-1), SLATE), small]
 
 
 # The small switches of the chosen light's flaps, at the end of their lines in the three views.

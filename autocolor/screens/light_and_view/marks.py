@@ -18,11 +18,11 @@ from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.object_lines import ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_ASPECT,
     OrthographicViews,
+    PointMark,
     ViewSide,
 )
 from autocolor.screens.picture.picture_edits import side_name
@@ -41,9 +41,9 @@ from autocolor.widgets.items import (
     area_of,
     between,
     clipped,
+    filled,
     joined,
     rounded,
-    segments,
     text,
     together,
 )
@@ -89,13 +89,17 @@ PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float
 """The eye: positions relative to the eye's position, joined by strokes."""
 
 
-SQUARE: Final = np.array([(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -4)], np.float64)
-"""The square around the mark of a point outside of a view, relative to the mark, joined by strokes."""
+OUTWARD: Final = np.array([(6, 0), (-4, 5), (-4, -5), (6, 0)], np.float64)
+"""The arrow at the edge that leads to a point outside: positions along it and across, joined by strokes."""
+
+BESIDE: Final = 12.0
+"""Assumed: elements or lines from the arrow at the edge back to the eye that it belongs to."""
 
 
-def around(mark: tuple[float, float], position: tuple[float, float], width: int = 1) -> list[Floats]:
-    """The strokes around a mark that is not at its point's position; the square is `width` times as wide."""
-    return [] if mark == position else [joined(SQUARE * (width, 1) + mark)]
+def outward(mark: PointMark) -> Floats:
+    """The strokes of the arrow at the edge of a view that leads to a point outside, (3, 4)."""
+    x, y = mark.away or (0.0, 0.0)
+    return joined(OUTWARD @ np.array([(x, y), (-y, x)]) + mark.place)
 
 
 class EyeMarks(NamedTuple):
@@ -111,16 +115,18 @@ def eye_marks(
 ) -> EyeMarks:
     """The marks of the eye and its view in one of the three views, clipped by its area.
 
-    An eye outside the area has its mark at the edge, with a frame around it.
+    An eye outside the area stands behind an arrow at the edge.
 
     The arrow ends at `target`: the view's target, or a point in its direction. `aspect` is the width of the
     picture over its height. The picture is drawn at the depth of the target, as the base of a pyramid with
     the eye at its top.
     """
-    at, mark = views.position(side, view.eye), views.mark_position(side, view.eye, target)
+    at, mark = views.position(side, view.eye), views.mark(side, view.eye, target)
     corners = views.positions(side, picture_corners(view, target, aspect))
     picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
-    eye = together([joined(LIDS + mark), joined(PUPIL + mark), *around(mark, at, 2)])
+    place = np.array(mark.place) - BESIDE * np.array(mark.away or (0.0, 0.0))
+    lines = [joined(LIDS + place), joined(PUPIL + place)]
+    eye = together(lines if mark.away is None else [*lines, outward(mark)])
     direction = arrow(at, views.position(side, target))
     return EyeMarks(clipped(eye, side.area), clipped(direction, side.area), clipped(picture, side.area))
 
@@ -233,18 +239,17 @@ def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
 def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> LightMarks:
     """The marks of a light in one of the views, clipped by its area, without its flaps.
 
-    A light outside the area has a mark at the edge, with a square around its cross.
+    A light outside the area has an arrow at the edge in place of its cross.
     """
     at = views.position(side, light.position)
     end = arrow_end(views, light)
-    mark = views.mark_position(side, light.position, end)
+    mark = views.mark(side, light.position, end)
     shaft = cone = np.empty((0, 4))
     if end is not None:
         shaft = arrow(at, views.position(side, end))
         if light.cone_angle is not None:
             cone = together([joined(each) for each in cone_outline(views, side, light, end)])
-    cross = CROSS + np.tile(mark, 2)
-    cross = together([cross, *around(mark, at)])
+    cross = CROSS + np.tile(mark.place, 2) if mark.away is None else outward(mark)
     return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
 
 
@@ -374,7 +379,6 @@ class SideItems:
         views: OrthographicViews,
         scene: Scene,
         target: Vector,
-        strokes: ObjectStrokes,
         chosen: str,
         moved: Vector | None,
     ) -> list[Item]:
@@ -389,14 +393,14 @@ class SideItems:
         ours = [each for each in lights if each[1].name == chosen]
         others = [each for each in lights if each[1].name != chosen]
         tables = [light for _, light in others]
-        eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view, strokes)
+        eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view)
 
         def title() -> Item:
             name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
             return text(name, side.area.left + 8, side.area.top + 4, GRAY)
 
         def still() -> list[Item]:
-            return still_items(views, side, eye, strokes, tables, bool(ours))
+            return still_items(views, side, eye, tables, bool(ours))
 
         def above() -> list[Item]:
             light_items = [item for _, light in ours for item in chosen_items(views, side, light)]
@@ -405,8 +409,8 @@ class SideItems:
         label = self._label.of(title, scene.front)
         return [
             label,
-            *([] if moved is None else [lines_across(views, side, moved)]),
-            *self._still.of(still, views, eye, strokes, bool(ours), *tables),
+            *([] if moved is None else lines_across(views, side, moved)),
+            *self._still.of(still, views, eye, bool(ours), *tables),
             *self._chosen.of(above, views, eye, *[light for _, light in ours]),
             *self._numeral_items(views, view, target, label.area, others, ours),
         ]
@@ -422,7 +426,7 @@ class SideItems:
     ) -> list[Item]:
         """The numerals of the lights. The chosen light's makes way for the others, which stay in place."""
         side = self._side
-        taken = [label, area_of(LIDS + views.mark_position(side, view.eye, target))]
+        taken = [label, area_of(LIDS + views.mark(side, view.eye, target).place)]
 
         def compute() -> list[Numeral]:
             return numerals(
@@ -446,15 +450,14 @@ def still_items(
     views: OrthographicViews,
     side: ViewSide,
     eye: EyeMarks,
-    strokes: ObjectStrokes,
     lights: Sequence[Light],
     has_eye: bool,
 ) -> list[Item]:
-    """The object, the edges of the picture, and the lights and the eye that are not chosen."""
+    """The edges of the picture, and the lights and the eye that are not chosen."""
     layers: dict[int, list[Floats]] = {
-        SLATE: [strokes.stage, eye.picture],
-        GRAY: [strokes.features],
-        LIGHT_GRAY: [strokes.silhouette],
+        SLATE: [eye.picture],
+        GRAY: [],
+        LIGHT_GRAY: [],
         BLUE: [eye.direction, eye.eye] if has_eye else [],
         WHITE: [],
     }
@@ -494,20 +497,19 @@ def crosses_of(views: OrthographicViews, side: ViewSide, number: int, light: Lig
         # An arrow that points at the viewer or away covers no place.
         if length > SHORTEST:
             arrow = right / length, down / length
-    element, line = views.mark_position(side, light.position, end)
+    element, line = views.mark(side, light.position, end).place
     crosses = [Cross(number, round(element), round(line), arrow)]
     if light.aim is not None and end is not None:
         crosses.append(Cross(number, round(to_element), round(to_line), (-arrow[0], -arrow[1]), is_aim=True))
     return crosses
 
 
-def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> Item:
+def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> list[Item]:
     """Thin lines through a point, which continue in the views beside and above."""
     area = side.area
-    element, line = views.position(side, point)
-    upright = joined([(element, area.top), (element, area.bottom)])
-    level = joined([(area.left, line), (area.right, line)])
-    return segments(together([upright, level]), SLATE, area)
+    element, line = (round(each) for each in views.position(side, point))
+    upright, level = area._replace(left=element, right=element), area._replace(top=line, bottom=line)
+    return [filled(each, SLATE) for each in (upright, level) if area.covers(each)]
 
 
 def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:
