@@ -125,7 +125,7 @@ def mark_of(movable: MovablePoint, side: ViewSide, scene: Scene, views: Orthogra
         return views.mark(side, point, target_of(scene))
     if movable.what == LIGHT:
         return views.mark(side, point, arrow_end(views, scene.lights_in_world[movable.light]))
-    return PointMark(*views.position(side, point))
+    return PointMark(*(views.position(side, point),) * 2)
 
 
 def _handles(movable: MovablePoint, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:

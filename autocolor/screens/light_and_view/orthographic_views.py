@@ -59,9 +59,6 @@ FILLED: Final = 0.84
 EDGE: Final = 8
 """Assumed: elements or lines between the edge of an area and the marks of points that are outside."""
 
-NEAREST: Final = 1e-6
-"""Assumed: the least share of the way to a point outside at which a mark counts as lying."""
-
 POINT: Final = 1e-9
 """Assumed: points closer than this fraction of the largest coordinate are the same point."""
 
@@ -106,21 +103,28 @@ def side_at(element: float, line: float) -> ViewSide | None:
 
 
 class PointMark(NamedTuple):
-    """The mark of a point in a view: an element and a line.
+    """The mark of a point in a view: its element and line, and those of the point, `at`.
 
-    If the point is outside, `away` is the unit vector to it, to the right and down, and the point is `ratio`
-    times as far from the end of its arrow as the mark is. A mark at its point has no `away`.
+    They differ if the point is outside. It is `ratio` times as far from the end of its arrow as the mark is.
     """
 
-    element: float
-    line: float
-    away: tuple[float, float] | None = None
+    place: tuple[float, float]
+    at: tuple[float, float]
     ratio: float = 1.0
 
     @property
-    def place(self) -> tuple[float, float]:
-        """The element and the line."""
-        return self.element, self.line
+    def is_outside(self) -> bool:
+        """Whether the mark is an arrow at the edge."""
+        return self.place != self.at
+
+    def dragged(self, element: int, line: int) -> tuple[int, int]:
+        """Where the point goes if the mark goes to a pixel: as many times as far as the point is farther."""
+        to = (element, line)
+        across, down = (
+            round(at + self.ratio * (now - place))
+            for at, place, now in zip(self.at, self.place, to, strict=True)
+        )
+        return across, down
 
 
 @dataclass(frozen=True)
@@ -155,25 +159,19 @@ class OrthographicViews:
         """
         at = self.position(side, point)
         if side.area.has(*at):
-            return PointMark(*at)
+            return PointMark(at, at)
         area = side.area.inset(EDGE)
         to = area.middle if end is None else self.position(side, end)
         if not area.has(*to):
             to = area.middle
-        # Each edge that the point is beyond is met at a share of the way from `to`; the nearest one counts.
-        share = min(
-            (edge - start) / (beyond - start)
-            for start, beyond, low, high in (
-                (to[0], at[0], area.left, area.right),
-                (to[1], at[1], area.top, area.bottom),
-            )
-            for edge in (low, high)
-            if min(start, beyond) <= edge <= max(start, beyond) and start != beyond
-        )
         step = at[0] - to[0], at[1] - to[1]
-        length = math.hypot(*step)
-        away = step[0] / length, step[1] / length
-        return PointMark(to[0] + share * step[0], to[1] + share * step[1], away, 1 / max(share, NEAREST))
+        # On the way from `to`, the nearest edge counts.
+        share = min(
+            ((high if along > 0 else low) - start) / along
+            for start, along, low, high in zip(to, step, area[:2], area[2:], strict=True)
+            if along
+        )
+        return PointMark((to[0] + share * step[0], to[1] + share * step[1]), at, 1 / share if share else 1.0)
 
     def placed(self, side: ViewSide, point: Vector, element: int, line: int) -> Vector:
         """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.

@@ -59,13 +59,14 @@ def test_the_mark_of_a_point_is_at_its_position_or_where_its_arrow_comes_into_th
 ) -> None:
     at, mark = views.position(side, point), views.mark(side, point, end)
     if side.area.has(*at):
-        assert mark == PointMark(*at)
+        assert mark == PointMark(at, at)
         return
     area = side.area.inset(EDGE)
-    beyond = [mark.element - area.left, area.right - mark.element, mark.line - area.top]
-    assert min(*beyond, area.bottom - mark.line) == pytest.approx(0, abs=1e-6)
-    assert mark.away is not None
-    assert np.hypot(*mark.away) == pytest.approx(1)
+    element, line = mark.place
+    beyond = [element - area.left, area.right - element, line - area.top, area.bottom - line]
+    assert min(beyond) == pytest.approx(0, abs=1e-6)
+    assert mark.is_outside
+    assert mark.at == at
     to = area.middle if end is None else views.position(side, end)
     if area.has(*to):
         arrow, way = np.subtract(at, to), np.subtract(mark.place, to)
