@@ -6,14 +6,13 @@ Two views set all three coordinates, and no number is typed. Positions and direc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final
 
 from autocolor.arrays import Words
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
-from autocolor.scene.lights import Light
 from autocolor.scene.scene import FRONTS
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.handles import (
@@ -27,7 +26,7 @@ from autocolor.screens.light_and_view.handles import (
     point_text,
     side_of,
 )
-from autocolor.screens.light_and_view.marks import SideItems, flap_marks
+from autocolor.screens.light_and_view.marks import SideItems
 from autocolor.screens.light_and_view.object_lines import ObjectLines, sampled
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
@@ -41,18 +40,14 @@ from autocolor.screens.light_and_view.orthographic_views import (
     shown_points,
     side_at,
 )
-from autocolor.screens.light_parameters import KIND, parameter_rows, put_light
+from autocolor.screens.light_parameters import KIND, parameter_rows
 from autocolor.screens.picture.over_picture import camera_rows
 from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
 from autocolor.screens.screen import Cached, Handle, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.items import (
     GRAY,
-    NIGHT,
     SLATE,
-    WHITE,
-    YELLOW,
-    Area,
     Item,
     image,
     outline,
@@ -64,11 +59,9 @@ from autocolor.widgets.widget import (
     Button,
     Choice,
     Pair,
-    Place,
     Steps,
     Switch,
     Widget,
-    box_items,
     titled,
 )
 
@@ -175,14 +168,7 @@ class LightAndViewScreen(Screen):
         small = self._small.of(lambda: image(sampled(words, area.height, area.width), *area[:2]), words)
         return [title, outline(area.inset(-1), SLATE), small]
 
-    # Widgets and handles.
-
-    def widgets(self) -> Sequence[Widget]:
-        session, chosen = self.session, self.chosen
-        if not chosen:
-            return []
-        put = partial(put_light, session, chosen)
-        return list(flap_switches(self.views, session.scene.lights[chosen], put))
+    # Handles.
 
     def handles(self) -> Sequence[Handle]:
         scene, views, chosen = self.session.scene, self.views, self.chosen
@@ -337,47 +323,6 @@ class LightAndViewScreen(Screen):
     def _tilt(self, steps: float) -> None:
         self.edits.tilt(steps * ANGLE)
         self.session.tell(f"angle {self.session.scene.view.angle:g} degrees")
-
-
-# The small switches of the chosen light's flaps, at the end of their lines in the three views.
-
-BOX: Final = 7
-"""Elements and lines of a switch."""
-
-
-class FlapSwitch(Switch):
-    """The small box of a flap's switch."""
-
-    def items(self, lit: bool) -> list[Item]:
-        return box_items(self.area, self.is_on, WHITE if lit else YELLOW, NIGHT)
-
-    def pick(self, place: Place) -> object:
-        return self.flip()
-
-
-def flap_switches(
-    views: OrthographicViews, light: Light, put: Callable[[Mapping[str, Any]], object]
-) -> Iterator[FlapSwitch]:
-    """The switches of a light's flaps; `put` is called with the changed fields.
-
-    A switch is within its view: above the right end of a level line, or to the right of the lower end of an
-    upright line; to the left if there is no room.
-    """
-    for side in SIDES:
-        for mark in flap_marks(views, side, light):
-            axis, on = AXES[mark.axis], mark.on
-            right, bottom = (round(each) for each in mark.stroke[0, 2:])
-            left = right + 2
-            if left + BOX - 1 > side.area.right:
-                left = right - BOX - 1
-            top = max(bottom - BOX - 1, side.area.top)
-            yield FlapSwitch(
-                f"{light.name}: flap {axis}, {mark.end}, {side.name}",
-                f"Switch flap {axis} of {light.name} {'off' if on else 'on'}.",
-                area=Area(left, top, left + BOX - 1, top + BOX - 1),
-                is_on=on,
-                flip=partial(put, {"flaps": {axis: {"on": not on}}}),
-            )
 
 
 # The menu's rows for the eye and the lights, and for columns of the chosen light that have no handle.

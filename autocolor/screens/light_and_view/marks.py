@@ -22,7 +22,6 @@ from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_ASPECT,
     OrthographicViews,
-    PointMark,
     ViewSide,
 )
 from autocolor.screens.picture.picture_edits import side_name
@@ -49,13 +48,14 @@ from autocolor.widgets.items import (
 )
 from ramtek_emu import instructions
 
-# Arrows on the screen: a shaft, and a head whose size does not depend on the shaft.
+# Arrows on the screen: a shaft, and a head whose size does not depend on the shaft. Shapes are positions
+# along an arrow and across it, joined by strokes.
 
-HEAD: Final = 7.0
-"""Assumed: the length of the head in elements; at most half of the arrow."""
+HEAD: Final = np.array([(-7, 3.15), (0, 0), (-7, -3.15)])
+"""Assumed: the head of an arrow. It takes at most half of the arrow."""
 
-HALF_WIDTH: Final = 0.45
-"""Assumed: how far the head opens to each side, as a fraction of its length."""
+OUTWARD: Final = np.array([(6, 0), (-4, 5), (-4, -5), (6, 0)])
+"""Assumed: the arrow at the edge of a view that leads to a point outside."""
 
 SHORTEST: Final = 3.0
 """Assumed: a shorter arrow, in elements, has no head: it points at the viewer or away."""
@@ -67,16 +67,22 @@ def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
     >>> arrow((0, 0), (20, 0))[1:].round(2).tolist()
     [[13.0, 3.15, 20.0, 0.0], [20.0, 0.0, 13.0, -3.15]]
     """
-    shaft = joined([start, end])
-    length = math.hypot(end[0] - start[0], end[1] - start[1])
+    shaft, length = joined([start, end]), math.dist(start, end)
     if length < SHORTEST:
         return shaft
-    x, y = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-    back = min(HEAD, length / 2)
-    wide = HALF_WIDTH * back
-    foot = end[0] - back * x, end[1] - back * y
-    head = [(foot[0] - wide * y, foot[1] + wide * x), end, (foot[0] + wide * y, foot[1] - wide * x)]
-    return together([shaft, joined(head)])
+    return together([shaft, turned(min(1.0, length / 14) * HEAD, unit(start, end), end)])
+
+
+def turned(shape: Floats, along: Floats, place: tuple[float, float]) -> Floats:
+    """The strokes of a shape at a place, turned to a unit vector to the right and down."""
+    x, y = along
+    return joined(shape @ np.array([(x, y), (-y, x)]) + place)
+
+
+def unit(start: tuple[float, float], end: tuple[float, float]) -> Floats:
+    """The unit vector from a position to another; zeros between equal positions."""
+    vector: Floats = np.subtract(end, start) / (math.dist(start, end) or 1.0)
+    return vector
 
 
 # The marks of the eye in the three views: an eye, its view direction, and the edges of the picture.
@@ -88,25 +94,8 @@ LIDS: Final = np.array([(-7, 0), (-3, -3), (3, -3), (7, 0), (3, 3), (-3, 3), (-7
 PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float64)
 """The eye: positions relative to the eye's position, joined by strokes."""
 
-
-OUTWARD: Final = np.array([(6, 0), (-4, 5), (-4, -5), (6, 0)], np.float64)
-"""The arrow at the edge that leads to a point outside: positions along it and across, joined by strokes."""
-
 BESIDE: Final = 12.0
 """Assumed: elements or lines from the arrow at the edge back to the eye that it belongs to."""
-
-
-def outward(mark: PointMark) -> Floats:
-    """The strokes of the arrow at the edge of a view that leads to a point outside, (3, 4)."""
-    x, y = direction_of(mark)
-    return joined(OUTWARD @ np.array([(x, y), (-y, x)]) + mark.place)
-
-
-def direction_of(mark: PointMark) -> Floats:
-    """The unit vector from a mark to its point outside, to the right and down; zeros for a point inside."""
-    step = np.subtract(mark.at, mark.place)
-    unit: Floats = step / (math.hypot(*step) or 1.0)
-    return unit
 
 
 class EyeMarks(NamedTuple):
@@ -131,9 +120,10 @@ def eye_marks(
     at, mark = views.position(side, view.eye), views.mark(side, view.eye, target)
     corners = views.positions(side, picture_corners(view, target, aspect))
     picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
-    place = np.array(mark.place) - BESIDE * direction_of(mark)
+    away = unit(mark.place, mark.at)
+    place = np.array(mark.place) - BESIDE * away
     lines = [joined(LIDS + place), joined(PUPIL + place)]
-    eye = together([*lines, outward(mark)] if mark.is_outside else lines)
+    eye = together([*lines, turned(OUTWARD, away, mark.place)] if mark.is_outside else lines)
     direction = arrow(at, views.position(side, target))
     return EyeMarks(clipped(eye, side.area), clipped(direction, side.area), clipped(picture, side.area))
 
@@ -239,7 +229,9 @@ def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> Light
         shaft = arrow(at, views.position(side, end))
         if light.cone_angle is not None:
             cone = cone_outline(views, side, light, end)
-    cross = outward(mark) if mark.is_outside else CROSS + np.tile(mark.place, 2)
+    cross = CROSS + np.tile(mark.place, 2)
+    if mark.is_outside:
+        cross = turned(OUTWARD, unit(mark.place, mark.at), mark.place)
     return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
 
 
