@@ -328,6 +328,7 @@ class SideItems:
 
     def __init__(self, side: ViewSide) -> None:
         self._side = side
+        self._eye: Cached[EyeMarks] = Cached()
         self._others: Cached[tuple[list[Item], list[Numeral]]] = Cached()
         self.numerals: Sequence[Numeral] = ()
         """The numerals of the last items."""
@@ -346,7 +347,7 @@ class SideItems:
         others = [light for light in lights if light.name != chosen]
         title = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
         label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
-        eye = eye_marks(views, side, view, target)
+        eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view)
         number = {light.name: place for place, light in enumerate(lights, start=1)}
 
         def numerals_of(lights: Sequence[Light], taken: Sequence[Area]) -> list[Numeral]:
@@ -356,7 +357,7 @@ class SideItems:
         def below() -> tuple[list[Item], list[Numeral]]:
             return still_items(views, side, eye, others, bool(ours)), numerals_of(others, [])
 
-        items, placed = self._others.of(below, views, view, bool(ours), *others)
+        items, placed = self._others.of(below, views, eye, bool(ours), *others)
         above = [item for light in ours for item in chosen_items(views, side, light)]
         # The numerals of the chosen light make way for the others, which stay in place.
         own = numerals_of(ours, [each for cross, area in placed for each in (area, cross.area)])
