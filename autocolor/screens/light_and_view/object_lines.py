@@ -13,9 +13,14 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Booleans, Floats, Indices, Words, dot, runs
+from autocolor.arrays import AnyArray, Booleans, Floats, Indices, Words, chunks, dot, runs
 from autocolor.immutable import read_only
-from autocolor.scene.geometry.normals import corners_at_shared_edges, places_of_corners, polygon_normals
+from autocolor.scene.geometry.normals import (
+    POLYGONS_AT_ONCE,
+    corners_at_shared_edges,
+    places_of_corners,
+    polygon_normals,
+)
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
@@ -187,7 +192,9 @@ def crease_edges(mesh: Mesh, numbers: Indices) -> Indices:
     """
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
     places = places_of_corners(coordinate_rows, node_rows)
-    normals = polygon_normals(np.take(coordinate_rows, node_rows, axis=1))
+    normals = np.empty((3, node_rows.shape[1]))
+    for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
+        normals[:, chunk] = polygon_normals(np.take(coordinate_rows, node_rows[:, chunk], axis=1))
     # Polygons without area have no creases.
     are_drawn = (normals != 0).any(axis=0) & (numbers[mesh.part_numbers] != STAGE)
     least = np.cos(np.radians(DRAWN_CREASE)) - 1e-9
