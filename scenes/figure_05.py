@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from autocolor.screens.light_and_view.orthographic_views import PICTURE_AREA
-from scenes.figures import Sheet, click, click_at, open_viewer, point_at
+from scenes.figures import Sheet, click_at, open_viewer, point_at
 
 
 def main() -> None:
-    """Move nearer, so that the views show the object, and display the view as a mesh."""
+    """Display the view as a mesh beside the views of the object."""
     sheet = Sheet("05")
     with open_viewer("coupe", "light and view") as (viewer, display):
-        click(viewer, "fit all", 0.75)
         click_at(viewer, PICTURE_AREA.right, PICTURE_AREA.bottom)
         # The message line tells the place of the first light.
         name = viewer.studio.scene.lights[0].name

@@ -256,8 +256,8 @@ def open_sections(heights: Mapping[str, int], folds: Mapping[str, bool], room: i
 
     `folds` has whether sections are to be open or folded, the last used section at the end. That section and
     the sections above it are as `folds` has them, so that its heading stays in its place; only if they do not
-    fit, the nearest above are folded. The sections below are open while there is room, unless `folds` has them
-    folded.
+    fit, the nearest above are folded. The sections below are open while there is room, unless they are folded
+    in `folds`.
     """
     names = list(heights)
     used = next((name for name in reversed(list(folds)) if name in heights), None)

@@ -68,7 +68,8 @@ def light_alone() -> Field:
 def light_place() -> Field:
     """The screen light & view, while the side light is dragged in the view from above."""
     with open_viewer("coupe", "light and view") as (viewer, display):
-        grab(viewer, "side: x", (-34, -14))
+        idle(viewer)
+        grab(viewer, "side: x", (-52, 0))
         return display.field()
 
 

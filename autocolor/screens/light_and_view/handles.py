@@ -10,7 +10,13 @@ from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.screens.light_and_view.marks import arrow_end, flap_marks
-from autocolor.screens.light_and_view.orthographic_views import AXES, SIDES, OrthographicViews
+from autocolor.screens.light_and_view.orthographic_views import (
+    AXES,
+    SIDES,
+    OrthographicViews,
+    PointMark,
+    ViewSide,
+)
 from autocolor.screens.picture.picture_edits import target_of
 from autocolor.screens.screen import Handle
 
@@ -89,6 +95,11 @@ def movable_of(handle: Handle) -> MovablePoint:
     return handle.key
 
 
+def side_of(movable: MovablePoint) -> ViewSide:
+    """The view in which a handle moves its point."""
+    return next(side for side in SIDES if side.name == movable.side)
+
+
 def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Handle]:
     """All handles. The chosen light or eye is last: of handles at one place, the last is grabbed.
 
@@ -106,18 +117,24 @@ def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Hand
     return handles if chosen else handles + eye
 
 
+def mark_of(movable: MovablePoint, side: ViewSide, scene: Scene, views: OrthographicViews) -> PointMark:
+    """The mark of a point in a view: of the eye and of a light, an arrow at the edge if it is outside."""
+    point = movable.point_in(scene, views)
+    assert point is not None
+    if movable.what == EYE:
+        return views.mark(side, point, target_of(scene))
+    if movable.what == LIGHT:
+        return views.mark(side, point, arrow_end(views, scene.lights_in_world[movable.light]))
+    return PointMark(*(views.position(side, point),) * 2)
+
+
 def _handles(movable: MovablePoint, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:
-    """The handles of a point in the views that show it, or a mark for it at the edge."""
+    """The handles of a point in the views that show it or have an arrow to it."""
     point = movable.point_in(scene, views)
     assert point is not None
     label = f"{movable.label}: {point_text(point, views)}"
     for side in SIDES:
-        place = views.position(side, point)
-        if movable.what == EYE:
-            place = views.mark_position(side, point, target_of(scene))
-        elif movable.what == LIGHT:
-            place = views.mark_position(side, point, arrow_end(views, scene.lights_in_world[movable.light]))
-        element, line = (round(each) for each in place)
+        element, line = (round(each) for each in mark_of(movable, side, scene, views).place)
         if side.area.has(element, line):
             yield Handle(movable._replace(side=side.name), element, line, label)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import chain, product
+from itertools import product
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -19,7 +19,6 @@ from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
-from autocolor.screens.light_and_view.object_lines import ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_ASPECT,
@@ -41,21 +40,22 @@ from autocolor.widgets.items import (
     area_of,
     between,
     clipped,
+    filled,
     joined,
     rounded,
-    segments,
     text,
     together,
 )
 from ramtek_emu import instructions
 
-# Arrows on the screen: a shaft, and a head whose size does not depend on the shaft.
+# Arrows on the screen: a shaft, and a head whose size does not depend on the shaft. Shapes are positions
+# along an arrow and across it, joined by strokes.
 
-HEAD: Final = 7.0
-"""Assumed: the length of the head in elements; at most half of the arrow."""
+HEAD: Final = np.array([(-7, 3.15), (0, 0), (-7, -3.15)])
+"""Assumed: the head of an arrow. It takes at most half of the arrow."""
 
-HALF_WIDTH: Final = 0.45
-"""Assumed: how far the head opens to each side, as a fraction of its length."""
+OUTWARD: Final = np.array([(6, 0), (-4, 5), (-4, -5), (6, 0)])
+"""Assumed: the arrow at the edge of a view that leads to a point outside."""
 
 SHORTEST: Final = 3.0
 """Assumed: a shorter arrow, in elements, has no head: it points at the viewer or away."""
@@ -67,16 +67,22 @@ def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
     >>> arrow((0, 0), (20, 0))[1:].round(2).tolist()
     [[13.0, 3.15, 20.0, 0.0], [20.0, 0.0, 13.0, -3.15]]
     """
-    shaft = joined([start, end])
-    length = math.hypot(end[0] - start[0], end[1] - start[1])
+    shaft, length = joined([start, end]), math.dist(start, end)
     if length < SHORTEST:
         return shaft
-    x, y = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-    back = min(HEAD, length / 2)
-    wide = HALF_WIDTH * back
-    foot = end[0] - back * x, end[1] - back * y
-    head = [(foot[0] - wide * y, foot[1] + wide * x), end, (foot[0] + wide * y, foot[1] - wide * x)]
-    return together([shaft, joined(head)])
+    return together([shaft, turned(min(1.0, length / 14) * HEAD, unit(start, end), end)])
+
+
+def turned(shape: Floats, along: Floats, place: tuple[float, float]) -> Floats:
+    """The strokes of a shape at a place, turned to a unit vector to the right and down."""
+    x, y = along
+    return joined(shape @ np.array([(x, y), (-y, x)]) + place)
+
+
+def unit(start: tuple[float, float], end: tuple[float, float]) -> Floats:
+    """The unit vector from a position to another; zeros between equal positions."""
+    vector: Floats = np.subtract(end, start) / (math.dist(start, end) or 1.0)
+    return vector
 
 
 # The marks of the eye in the three views: an eye, its view direction, and the edges of the picture.
@@ -88,14 +94,8 @@ LIDS: Final = np.array([(-7, 0), (-3, -3), (3, -3), (7, 0), (3, 3), (-3, 3), (-7
 PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float64)
 """The eye: positions relative to the eye's position, joined by strokes."""
 
-
-SQUARE: Final = np.array([(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -4)], np.float64)
-"""The square around the mark of a point outside of a view, relative to the mark, joined by strokes."""
-
-
-def around(mark: tuple[float, float], position: tuple[float, float], width: int = 1) -> list[Floats]:
-    """The strokes around a mark that is not at its point's position; the square is `width` times as wide."""
-    return [] if mark == position else [joined(SQUARE * (width, 1) + mark)]
+BESIDE: Final = 12.0
+"""Assumed: elements or lines from the arrow at the edge back to the eye that it belongs to."""
 
 
 class EyeMarks(NamedTuple):
@@ -111,16 +111,19 @@ def eye_marks(
 ) -> EyeMarks:
     """The marks of the eye and its view in one of the three views, clipped by its area.
 
-    An eye outside the area has its mark at the edge, with a frame around it.
+    An eye outside the area stands behind an arrow at the edge.
 
     The arrow ends at `target`: the view's target, or a point in its direction. `aspect` is the width of the
     picture over its height. The picture is drawn at the depth of the target, as the base of a pyramid with
     the eye at its top.
     """
-    at, mark = views.position(side, view.eye), views.mark_position(side, view.eye, target)
+    at, mark = views.position(side, view.eye), views.mark(side, view.eye, target)
     corners = views.positions(side, picture_corners(view, target, aspect))
     picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
-    eye = together([joined(LIDS + mark), joined(PUPIL + mark), *around(mark, at, 2)])
+    away = unit(mark.place, mark.at)
+    place = np.array(mark.place) - BESIDE * away
+    lines = [joined(LIDS + place), joined(PUPIL + place)]
+    eye = together([*lines, turned(OUTWARD, away, mark.place)] if mark.is_outside else lines)
     direction = arrow(at, views.position(side, target))
     return EyeMarks(clipped(eye, side.area), clipped(direction, side.area), clipped(picture, side.area))
 
@@ -143,53 +146,36 @@ def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) 
 # light. Seen from the side, the outline is two lines from the light that touch the rim; seen along the axis,
 # from within the cone, it is the rim alone, an ellipse.
 
-RIM_SIDES: Final = 36
+RIM_SIDES: Final = 72
 """Assumed: strokes of an ellipse."""
 
 
-def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Vector) -> tuple[Floats, ...]:
-    """The outline of the cone of a light, as polylines, each (positions, 2). The light must have a cone.
+def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Vector) -> Floats:
+    """The strokes of the outline of a light's cone, (n, 4). The light must have a cone.
 
     `end` is the end of its arrow. A cone of more than 90 degrees opens behind the light. A cone of 180
     degrees contains all points and has no outline.
-
-    In the view, the rim is an ellipse whose half axes are r |cos F| along the axis of the cone and r across
-    it, at the distance l sin F from the light: F is the angle between the axis and the direction of looking,
-    l and r are the height of the cone and the radius of its rim. Tangents from the light to the ellipse exist
-    if F is larger than the cone angle.
     """
     assert light.cone_angle is not None
     assert light.axis is not None
     if light.cone_angle == 180:
-        return ()
-    angle = math.radians(light.cone_angle)
-    slant = math.dist(end, light.position)
-    height, radius = slant * math.cos(angle), slant * math.sin(angle)
-    axis, position = np.array(light.axis), np.array(light.position)
-
-    across = np.array([axis[side.right], axis[side.up]])
-    sine, cosine = float(np.hypot(*across)), float(abs(axis @ np.array(side.toward)))
-    distance, half = height * sine, radius * cosine
-    if abs(distance) <= half:
-        turns = np.linspace(0, 2 * math.pi, RIM_SIDES + 1)
-        # Two unit vectors that are perpendicular to the axis and to each other.
-        first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-        first /= np.linalg.norm(first)
-        rim = np.cos(turns)[:, None] * first + np.sin(turns)[:, None] * np.cross(axis, first)
-        return (views.positions(side, position + height * axis + radius * rim),)
-
-    # The tangents touch the ellipse on the polar line of the light.
-    touching = distance - half * half / distance
-    beside = radius * math.sqrt(1 - (half / distance) ** 2)
-    forward = across / sine
-    left = np.array([-forward[1], forward[0]])
-    lines = []
-    for sign in (1, -1):
-        flat = touching * forward + sign * beside * left
-        point = position.copy()
-        point[[side.right, side.up]] += flat
-        lines.append(views.positions(side, np.stack([position, point])))
-    return tuple(lines)
+        return np.empty((0, 4))
+    angle, slant = math.radians(light.cone_angle), math.dist(end, light.position)
+    axis, turns = np.array(light.axis), np.linspace(0, 2 * math.pi, RIM_SIDES + 1)
+    # Two unit vectors that are perpendicular to the axis and to each other.
+    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    first /= np.linalg.norm(first)
+    circle = np.cos(turns)[:, None] * first + np.sin(turns)[:, None] * np.cross(axis, first)
+    points = np.array(light.position) + slant * (math.cos(angle) * axis + math.sin(angle) * circle)
+    rim, at = views.positions(side, points), np.array(views.position(side, light.position))
+    away = rim - at
+    # From outside the ellipse, all of it is seen within less than half a turn around its middle.
+    middle = away[:-1].mean(axis=0)
+    across, along = away @ (-middle[1], middle[0]), away @ middle
+    if along.min() <= 0:
+        return joined(rim)
+    ends = rim[[(across / along).argmin(), (across / along).argmax()]]
+    return between(np.stack([at, at]), ends)
 
 
 # The marks of a light in the three views: its cross, the arrow to its aim, its cone and its flaps.
@@ -233,18 +219,19 @@ def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
 def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> LightMarks:
     """The marks of a light in one of the views, clipped by its area, without its flaps.
 
-    A light outside the area has a mark at the edge, with a square around its cross.
+    A light outside the area has an arrow at the edge in place of its cross.
     """
     at = views.position(side, light.position)
     end = arrow_end(views, light)
-    mark = views.mark_position(side, light.position, end)
+    mark = views.mark(side, light.position, end)
     shaft = cone = np.empty((0, 4))
     if end is not None:
         shaft = arrow(at, views.position(side, end))
         if light.cone_angle is not None:
-            cone = together([joined(each) for each in cone_outline(views, side, light, end)])
-    cross = CROSS + np.tile(mark, 2)
-    cross = together([cross, *around(mark, at)])
+            cone = cone_outline(views, side, light, end)
+    cross = CROSS + np.tile(mark.place, 2)
+    if mark.is_outside:
+        cross = turned(OUTWARD, unit(mark.place, mark.at), mark.place)
     return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
 
 
@@ -281,9 +268,6 @@ REACH: Final = 4
 AWAY: Final = 2
 """Assumed: the elements or lines between a cross and its numeral."""
 
-NEAR_ARROW: Final = math.cos(math.radians(50))
-"""Assumed: a place within 50 degrees of the light's arrow is taken only if all other places are worse."""
-
 RINGS: Final = 2
 RING: Final = 7
 """Assumed: the rings of places around a cross, and the elements or lines between them."""
@@ -293,15 +277,11 @@ PLACES: Final = ((1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (
 
 
 class Cross(NamedTuple):
-    """A light or its aim in a view: the light's number, the element and line, the direction of the arrow.
-
-    `arrow` is a unit vector to the right and down, and zero without an arrow.
-    """
+    """A light or its aim in a view: the light's number, the element and line."""
 
     number: int
     element: int
     line: int
-    arrow: tuple[float, float] = (0.0, 0.0)
     is_aim: bool = False
 
     @property
@@ -333,50 +313,28 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
     filled = [*taken, *[cross.area for cross in seen]]
     placed = []
     for cross in seen:
-        best, least = None, math.inf
-        for ring, (right, down) in product(range(RINGS), PLACES):
-            place = cross.numeral(right, down, ring)
-            if not area.covers(place):
-                continue
-            toward = (right * cross.arrow[0] + down * cross.arrow[1]) / math.hypot(right, down)
-            # Farther away, it is less clear to which cross a numeral belongs.
-            burden = sum(map(place.overlaps, filled)) + (toward > NEAR_ARROW) / 2 + ring * 3 / 4
-            if burden < least:
-                best, least = place, burden
-            if least == 0:
-                break
-        if best is not None:
+        places = (cross.numeral(*place, ring) for ring, place in product(range(RINGS), PLACES))
+        inside = [place for place in places if area.covers(place)]
+        if inside:
+            # The first of the places that overlap the fewest areas.
+            best = min(inside, key=lambda place: sum(map(place.overlaps, filled)))
             placed.append(Numeral(cross, best))
             filled.append(best)
     return placed
 
 
-Numbered = tuple[int, Light]
-"""A light, after its number in the table, from 1 on."""
-
-
 class SideItems:
-    """The items of one of the views. Unchanged items are cached."""
+    """The items of one of the views. The items that are not of the chosen light or eye are cached."""
 
     def __init__(self, side: ViewSide) -> None:
         self._side = side
         self._eye: Cached[EyeMarks] = Cached()
-        self._still: Cached[list[Item]] = Cached()
-        self._chosen: Cached[list[Item]] = Cached()
-        self._numerals: Cached[list[Numeral]] = Cached()
+        self._others: Cached[tuple[list[Item], list[Numeral]]] = Cached()
         self.numerals: Sequence[Numeral] = ()
         """The numerals of the last items."""
-        self._lights: Cached[tuple[Light, ...]] = Cached()
-        self._label: Cached[Item] = Cached()
 
     def items(
-        self,
-        views: OrthographicViews,
-        scene: Scene,
-        target: Vector,
-        strokes: ObjectStrokes,
-        chosen: str,
-        moved: Vector | None,
+        self, views: OrthographicViews, scene: Scene, target: Vector, chosen: str, moved: Vector | None
     ) -> list[Item]:
         """The items of a scene, from the lowest to the highest.
 
@@ -384,61 +342,36 @@ class SideItems:
         the views through `moved`, a point that is being placed.
         """
         side, view = self._side, scene.view
-        in_world = self._lights.of(lambda: scene.lights_in_world, scene.lights, scene.view)
-        lights = list(enumerate(in_world, start=1))
-        ours = [each for each in lights if each[1].name == chosen]
-        others = [each for each in lights if each[1].name != chosen]
-        tables = [light for _, light in others]
-        eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view, strokes)
+        lights = scene.lights_in_world
+        ours = [light for light in lights if light.name == chosen]
+        others = [light for light in lights if light.name != chosen]
+        title = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
+        label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
+        eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view)
+        number = {light.name: place for place, light in enumerate(lights, start=1)}
 
-        def title() -> Item:
-            name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
-            return text(name, side.area.left + 8, side.area.top + 4, GRAY)
+        def numerals_of(lights: Sequence[Light], taken: Sequence[Area]) -> list[Numeral]:
+            crosses = [cross for each in lights for cross in crosses_of(views, side, number[each.name], each)]
+            return numerals(crosses, side.area, [*taken, label.area, area_of(eye.eye.reshape(-1, 2))])
 
-        def still() -> list[Item]:
-            return still_items(views, side, eye, strokes, tables, bool(ours))
+        def below() -> tuple[list[Item], list[Numeral]]:
+            return still_items(views, side, eye, others, bool(ours)), numerals_of(others, [])
 
-        def above() -> list[Item]:
-            light_items = [item for _, light in ours for item in chosen_items(views, side, light)]
-            return light_items or drawn_items({YELLOW: [eye.direction, eye.eye]})
-
-        label = self._label.of(title, scene.front)
+        items, placed = self._others.of(below, views, eye, bool(ours), *others)
+        above = [item for light in ours for item in chosen_items(views, side, light)]
+        # The numerals of the chosen light make way for the others, which stay in place.
+        own = numerals_of(ours, [each for cross, area in placed for each in (area, cross.area)])
+        self.numerals = [*placed, *own]
+        words = {number[light.name]: WHITE if light.on else GRAY for light in others}
         return [
             label,
-            *([] if moved is None else [lines_across(views, side, moved)]),
-            *self._still.of(still, views, eye, strokes, bool(ours), *tables),
-            *self._chosen.of(above, views, eye, *[light for _, light in ours]),
-            *self._numeral_items(views, view, target, label.area, others, ours),
-        ]
-
-    def _numeral_items(
-        self,
-        views: OrthographicViews,
-        view: View,
-        target: Vector,
-        label: Area,
-        others: Sequence[Numbered],
-        ours: Sequence[Numbered],
-    ) -> list[Item]:
-        """The numerals of the lights. The chosen light's makes way for the others, which stay in place."""
-        side = self._side
-        taken = [label, area_of(LIDS + views.mark_position(side, view.eye, target))]
-
-        def compute() -> list[Numeral]:
-            return numerals(
-                [cross for each in others for cross in crosses_of(views, side, *each)], side.area, taken
-            )
-
-        placed = self._numerals.of(compute, views, view, *chain.from_iterable(others))
-        around = [area for cross, area in placed] + [cross.area for cross, _ in placed]
-        own = numerals(
-            [cross for each in ours for cross in crosses_of(views, side, *each)], side.area, [*taken, *around]
-        )
-        self.numerals = [*placed, *own]
-        is_on = {number: light.on for number, light in others}
-        return [
-            *[numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in placed],
-            *[numeral_item(each, YELLOW) for each in own],
+            *([] if moved is None else lines_across(views, side, moved)),
+            *items,
+            *(above or drawn_items({YELLOW: [eye.direction, eye.eye]})),
+            *[
+                text(str(cross.number), area.left, area.top, words.get(cross.number, YELLOW))
+                for cross, area in self.numerals
+            ],
         ]
 
 
@@ -446,15 +379,14 @@ def still_items(
     views: OrthographicViews,
     side: ViewSide,
     eye: EyeMarks,
-    strokes: ObjectStrokes,
     lights: Sequence[Light],
     has_eye: bool,
 ) -> list[Item]:
-    """The object, the edges of the picture, and the lights and the eye that are not chosen."""
+    """The edges of the picture, and the lights and the eye that are not chosen."""
     layers: dict[int, list[Floats]] = {
-        SLATE: [strokes.stage, eye.picture],
-        GRAY: [strokes.features],
-        LIGHT_GRAY: [strokes.silhouette],
+        SLATE: [eye.picture],
+        GRAY: [],
+        LIGHT_GRAY: [],
         BLUE: [eye.direction, eye.eye] if has_eye else [],
         WHITE: [],
     }
@@ -475,39 +407,25 @@ def chosen_items(views: OrthographicViews, side: ViewSide, light: Light) -> list
     return drawn_items(layers)
 
 
-def numeral_item(numeral: Numeral, word: int) -> Item:
-    """The number of a light in a color."""
-    return text(str(numeral.cross.number), numeral.area.left, numeral.area.top, word)
-
-
 def crosses_of(views: OrthographicViews, side: ViewSide, number: int, light: Light) -> list[Cross]:
-    """The cross of a light in one of the views, with the direction of its arrow, and the place of its aim.
+    """The mark of a light in one of the views, and the place of its aim.
 
     Aims have numerals, too, because they may be closer together than their handles reach.
     """
-    element, line = views.position(side, light.position)
-    end, arrow = arrow_end(views, light), (0.0, 0.0)
-    if end is not None:
-        to_element, to_line = views.position(side, end)
-        right, down = to_element - element, to_line - line
-        length = math.hypot(right, down)
-        # An arrow that points at the viewer or away covers no place.
-        if length > SHORTEST:
-            arrow = right / length, down / length
-    element, line = views.mark_position(side, light.position, end)
-    crosses = [Cross(number, round(element), round(line), arrow)]
-    if light.aim is not None and end is not None:
-        crosses.append(Cross(number, round(to_element), round(to_line), (-arrow[0], -arrow[1]), is_aim=True))
-    return crosses
+    mark = views.mark(side, light.position, arrow_end(views, light)).place
+    places = [mark] if light.aim is None else [mark, views.position(side, light.aim)]
+    return [
+        Cross(number, round(element), round(line), is_aim)
+        for is_aim, (element, line) in zip((False, True), places, strict=False)
+    ]
 
 
-def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> Item:
+def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> list[Item]:
     """Thin lines through a point, which continue in the views beside and above."""
     area = side.area
-    element, line = views.position(side, point)
-    upright = joined([(element, area.top), (element, area.bottom)])
-    level = joined([(area.left, line), (area.right, line)])
-    return segments(together([upright, level]), SLATE, area)
+    element, line = (round(each) for each in views.position(side, point))
+    upright, level = area._replace(left=element, right=element), area._replace(top=line, bottom=line)
+    return [filled(each, SLATE) for each in (upright, level) if area.covers(each)]
 
 
 def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:

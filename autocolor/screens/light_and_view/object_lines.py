@@ -1,417 +1,364 @@
-"""The lines of the object in the views of the light and view screen, computed once for a mesh.
+"""The lines of the object on the light and view screen: outlines, borders of parts and creases.
 
-All edges are drawn at once. Hidden edges are left out later, when there is time: finding them takes longer
-than a page should. A stage, such as a floor, is drawn by its features alone.
+A depth picture has the depth and the part that are seen at each pixel of a view. An outline is where the
+depth jumps from a pixel to the next, and a border is where the part changes. Creases are edges of the mesh;
+the depths tell their visible pixels. So no line that the object hides is drawn.
+
+The method is that of Saito and Takahashi, "Comprehensible Rendering of 3-D Shapes", SIGGRAPH 1990.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks, dot
-from autocolor.immutable import Immutable, read_only
-from autocolor.scene.defaults import framed
-from autocolor.scene.geometry.normals import edge_keys, places_of_corners, polygon_normals
+from autocolor.arrays import AnyArray, Booleans, Floats, Indices, Words, chunks, dot, runs
+from autocolor.immutable import read_only
+from autocolor.scene.geometry.normals import (
+    POLYGONS_AT_ONCE,
+    corners_at_shared_edges,
+    places_of_corners,
+    polygon_normals,
+)
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Part
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
-from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, ViewSide
-from autocolor.visibility.camera import NEAR, rotated
-from autocolor.visibility.projection import focal_length
-from autocolor.visibility.visible_points import POINT, VisiblePoints
-from autocolor.visibility.visible_surfaces import visible_surfaces
-from autocolor.widgets.items import Area, between, clipped, drawn
+from autocolor.screens.light_and_view.orthographic_views import (
+    LINES_BETWEEN,
+    SIDES,
+    OrthographicViews,
+    ViewSide,
+)
+from autocolor.visibility.camera import rotated
+from autocolor.visibility.depth import depth_scale, polygons_of_numbers
+from autocolor.visibility.projection import focal_length, projection
+from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.visibility.visible_surfaces import depth_test
+from autocolor.widgets.items import GRAY, HEIGHT, LIGHT_GRAY, NIGHT, SLATE, WIDTH, Area
 
-# Leaving out hidden edges, by the depths of the visible points of a picture.
-#
-# Three points of an edge are compared with the farthest visible point at the pixels around them. Assumed: an
-# edge is drawn as a whole or not at all.
-
-FAR_FIELD: Final = 0.5
-"""Assumed: degrees of view of an eye so far away that it sees the object as an orthographic view shows it."""
-
-FINER: Final = 2
-"""Assumed: pixels to an element of a view in the raster that finds its visible points."""
-
-DEPTH: Final = POINT.start + 2
-"""The row of the visible points' depths."""
-
-TESTED: Final = (0.2, 0.5, 0.8)
-"""Assumed: fractions of an edge at which its points are tested. Two of three points must be visible."""
-
-BEHIND: Final = 4e-3
-"""Assumed: how far behind a visible point another point still counts as visible, in radii of the object.
-
-Looked at on two cars: a fourth of this and four times as much draw nearly the same edges.
-"""
+NO_PART: Final = -1
+STAGE: Final = -2
+"""The numbers at pixels that see nothing, and that see any part of the stage."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class VisibleDepths(Immutable):
-    """The depths of a picture's visible points: at each pixel, the farthest of the nine pixels around it.
+class DepthPicture(NamedTuple):
+    """What is seen at each pixel of a view.
 
-    `farthest` is (lines, elements) float32, relative to `origin` in camera space and in `unit`; it is
-    infinite at and beside the background. A point at most `behind` farther away counts as visible.
+    `depths`, (lines, elements), are distances along the view direction, in units; infinite where nothing is
+    seen. `parts`, (lines, elements) intp, are the part numbers there, STAGE or NO_PART.
     """
 
     view: View
-    unit: float
-    origin: float
-    behind: float
-    farthest: Singles
+    depths: Floats
+    parts: Indices
+
+    @property
+    def focal(self) -> float:
+        """The focal length in pixels: the size of a pixel is the depth over it."""
+        lines, elements = self.depths.shape
+        return focal_length(lines, elements, self.view.field_of_view)
 
 
-def visible_depths(visible: VisiblePoints) -> VisibleDepths:
-    """The depths of the visible points of a picture."""
-    depths = np.full((visible.lines + 2, visible.elements + 2), np.inf, np.float32)
-    inner = np.full(visible.lines * visible.elements, np.inf, np.float32)
-    inner[visible.pixels] = visible.rows[DEPTH]
-    depths[1:-1, 1:-1] = inner.reshape(visible.lines, visible.elements)
-    across = np.maximum(np.maximum(depths[:, :-2], depths[:, 1:-1]), depths[:, 2:])
-    farthest = np.maximum(np.maximum(across[:-2], across[1:-1]), across[2:])
-    return VisibleDepths(
-        visible.view,
-        visible.unit,
-        float(visible.origin[2]),
-        BEHIND * visible.radius,
-        read_only(farthest),
-    )
+# Depth pictures, by the scan lines and the depth test of the renderer.
+
+FAR_FIELD: Final = 0.01
+"""Assumed: degrees of view of an eye so far away that it sees the object as an orthographic view shows it.
+
+Of an object that fills its view, no point is a fiftieth of a pixel off.
+"""
 
 
-def depths_toward(
-    mesh: Mesh, side: ViewSide, part_numbers: Sequence[int] | None = None
-) -> VisibleDepths | None:
-    """The depths of the visible points in one of the three views; None without polygons.
+def view_of_side(side: ViewSide, views: OrthographicViews) -> View:
+    """The view of an eye far away, whose picture of the size of the area shows one of the three views."""
+    area = side.area
+    distance = focal_length(area.height, area.width, FAR_FIELD) / views.scale
+    x, y, z = (center + distance * step for center, step in zip(views.center, side.toward, strict=True))
+    back, left, down = side.toward
+    return View((x, y, z), direction=(-back, -left, -down), field_of_view=FAR_FIELD)
 
-    The object fills the picture of an eye far away. `part_numbers` leaves out all other parts, so that a
-    stage hides nothing.
+
+def depth_picture(mesh: Mesh, view: View, lines: int, elements: int, numbers: Indices) -> DepthPicture:
+    """The depth picture of a mesh in a view. The stage is seen only where the object is not.
+
+    `numbers`, (parts,), are the numbers of the parts, or STAGE.
     """
-    alone = mesh
-    if part_numbers is not None:
-        chosen = np.isin(mesh.part_numbers, list(part_numbers))
-        if not chosen.all():
-            alone = Mesh(
-                mesh.coordinates, mesh.node_numbers[chosen], mesh.part_numbers[chosen], mesh.part_names
-            )
-    if not len(alone.node_numbers):
-        return None
-    width, height = FINER * side.area.width, FINER * side.area.height
-    x, y, z = side.toward
-    far = View(side.toward, direction=(-x, -y, -z), field_of_view=FAR_FIELD)
-    view = framed(far, alone.used_coordinates, width / height)
-    return visible_depths(visible_surfaces(alone, view, (1,) * len(mesh.part_names), height, width))
+    projected = projection(mesh, view, lines, elements)
+    scale = depth_scale(projected)
+    of_polygons = numbers.take(mesh.part_numbers.take(projected.polygon_numbers))
+    keys = np.zeros(lines * elements, np.int64)
+    for on_stage in (False, True):
+        layer = np.zeros_like(keys)
+        depth_test(layer, projected, scale, np.flatnonzero((of_polygons == STAGE) == on_stage))
+        keys = np.where(keys > 0, keys, layer)
+    depths, parts = np.full(len(keys), np.inf), np.full(len(keys), NO_PART)
+    seen = np.flatnonzero(keys)
+    polygons = polygons_of_numbers(projected, keys[seen] & (scale.number_limit - 1))
+    depths[seen] = scale.factor * projected.unit / (keys[seen] // scale.number_limit)
+    parts[seen] = of_polygons.take(polygons)
+    return DepthPicture(view, depths.reshape(lines, elements), parts.reshape(lines, elements))
 
 
-def without_hidden(edges: Indices, coordinates: Floats, depths: VisibleDepths) -> Indices:
-    """The edges that are not hidden. `edges` is (n, 2) nodes, `coordinates` (nodes, 3)."""
-    starts, ends = (np.take(coordinates.T, nodes, axis=1) for nodes in edges.T)
-    visible = [_are_visible(starts + at * (ends - starts), depths) for at in TESTED]
-    visible_edges: Indices = edges[np.sum(visible, axis=0) >= 2]
-    return visible_edges
+def depth_picture_of_points(
+    points: VisiblePoints, lines: int, elements: int, numbers: Indices
+) -> DepthPicture:
+    """The depth picture of the visible points of a picture, at the middles of so many lines and elements.
+
+    `numbers` are as in `depth_picture`.
+    """
+    depths = np.full(points.lines * points.elements, np.inf)
+    parts = np.full(len(depths), NO_PART)
+    depths[points.pixels], parts[points.pixels] = points.depths, numbers.take(points.parts.numbers - 1)
+    shape = points.lines, points.elements
+    small = (sampled(each.reshape(shape), lines, elements) for each in (depths, parts))
+    return DepthPicture(points.view, *small)
 
 
-def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
-    """Whether points, (3, n), are visible; a point outside of the picture counts as visible."""
-    lines, elements = depths.farthest.shape
-    x, y, depth = rotated(depths.view.axes / depths.unit, points, depths.view.eye)
-    before = depth > 0
-    scale = focal_length(lines, elements, depths.view.field_of_view) / np.where(before, depth, 1.0)
-    element, line = np.floor(x * scale + elements / 2), np.floor(y * scale + lines / 2)
-    inside = before & (element >= 0) & (element < elements) & (line >= 0) & (line < lines)
-    visible = np.ones(len(depth), np.bool_)
-    rows = np.flatnonzero(inside)
-    farthest = depths.farthest[line[rows].astype(np.intp), element[rows].astype(np.intp)]
-    visible[rows] = depth[rows] - depths.origin <= farthest + depths.behind
-    return visible
+def sampled(table: AnyArray, lines: int, elements: int) -> AnyArray:
+    """A raster of another size: each value is that at the middle of its place."""
+    rows, columns = (
+        (2 * np.arange(size) + 1) * count // (2 * size)
+        for size, count in zip((lines, elements), table.shape, strict=True)
+    )
+    # Twice `take` costs a seventh of indexing by both.
+    small: AnyArray = table.take(rows, axis=0).take(columns, axis=1)
+    return small
 
 
-# The edges of a mesh: features, which every view shows, and smooth edges, which may be a silhouette.
-#
-# They are computed once for a mesh. Nodes at the same place count as one node, so that parts which repeat
-# their nodes still meet. An edge is a pair of node numbers of its first polygon.
+# Outlines and borders: pairs of neighboring pixels, and the pixel of each pair that is drawn. If it is always
+# on the same side of a line, the line is one pixel wide and has no gaps.
+
+JUMP: Final = 1.0
+"""Assumed: a depth jumps by more than so many pixels, and so many slopes, beyond the steps beside it."""
+
+
+def outlines_and_borders(picture: DepthPicture) -> tuple[Booleans, Booleans]:
+    """The pixels of outlines, nearer than their neighbors, and those of borders between parts.
+
+    Both are (lines, elements).
+    """
+    is_seen = picture.parts != NO_PART
+    pixel = picture.depths.min() / picture.focal if is_seen.any() else 1.0
+    depths = picture.depths / pixel
+    # The stage lies behind the object, and has no lines but its outline.
+    depths = np.where(picture.parts == STAGE, 2 * depths.max(where=is_seen, initial=0.0), depths)
+    outlines, borders = np.zeros((2, *depths.shape), np.bool_)
+    for turned in (np.asarray, np.transpose):
+        rows, parts = np.ascontiguousarray(turned(depths)), np.ascontiguousarray(turned(picture.parts))
+        jumps = _jumps(rows)
+        differs = (parts[:, :-1] != parts[:, 1:]) & ~jumps
+        for pixels, pairs, is_first in (
+            (turned(outlines), jumps, rows[:, :-1] < rows[:, 1:]),
+            (turned(borders), differs, parts[:, :-1] > parts[:, 1:]),
+        ):
+            pixels[:, :-1] |= pairs & is_first
+            pixels[:, 1:] |= pairs & ~is_first
+    return outlines, borders
+
+
+def _jumps(depths: Floats) -> Booleans:
+    """Whether the depth jumps from each pixel of a row to the next; `depths`, (rows, n), are in pixels.
+
+    A step is no jump if the step before it or after it is about as large: the surface is only steep there.
+    """
+    with np.errstate(invalid="ignore"):
+        steps = np.diff(depths, axis=1)
+        around = np.pad(steps, ((0, 0), (1, 1)), constant_values=np.inf)
+        before, after = around[:, :-2], around[:, 2:]
+        slope = np.fmin(np.abs(before), np.abs(after))
+        unexplained = np.fmin(np.abs(steps - before), np.abs(steps - after))
+        jumps: Booleans = np.isinf(steps) | (unexplained > JUMP * (1 + slope))
+    return jumps
+
+
+# Creases: edges of the mesh, drawn at the pixels where the depth picture sees them.
 
 DRAWN_CREASE: Final = 30.0
-"""Assumed: degrees; a larger angle between polygons is drawn as a crease.
+"""Assumed: degrees; a larger angle between polygons of a part is drawn as a crease.
 
 Looked at on two cars in an area of 248 x 224: with 40 degrees, the crease angle of normals, the windows of a
 car of one part are in pieces, and with 60 gone. A cylinder of 12 sides has no lines along it.
 """
 
-POLYGONS_AT_ONCE: Final = 1 << 13
-
-MOST_FEATURES: Final = 1 << 15
-"""Assumed: a mesh with more features, such as a noisy scan, is drawn by its longest features alone."""
+BEHIND: Final = 0.5
+"""Assumed: how far behind the farthest of nine neighboring pixels an edge still counts as seen, in pixels."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class MeshEdges(Immutable):
-    """The edges of some polygons of a mesh, and the planes of these polygons.
+def crease_edges(mesh: Mesh, numbers: Indices) -> Indices:
+    """The two nodes of each crease of the object, (2, creases). The winding of polygons does not matter.
 
-    `coordinates`, (nodes, 3), is the mesh's, and polygons are rows of its polygon table. `features`,
-    (features, 2) intp, has the nodes of open edges, of creases and of edges between parts; `smooth`,
-    (edges, 2), has the nodes of all other edges. `polygons`, (2, edges), are the two polygons at a smooth
-    edge. `same_direction`, (edges,), is whether both run along the edge in the same direction, and so have
-    opposite winding. A point is in the plane of a polygon if its dot product with the normal, (3, polygons),
-    is the offset, (polygons,).
+    `numbers` are as in `depth_picture`.
     """
-
-    coordinates: Floats
-    features: Indices
-    smooth: Indices
-    polygons: Indices
-    same_direction: Booleans
-    normals: Floats
-    offsets: Floats
-
-
-class _Sides(NamedTuple):
-    """The sides of polygons, sorted so that all sides of an edge follow each other.
-
-    Corner c of polygon p is c * polygons + p. `corners` and `forward` are (sides,): the corner that a side
-    begins at, and whether it runs to a higher place. `starts` and `counts` are (edges,): the first side of
-    each edge, and how many it has.
-    """
-
-    corners: Indices
-    forward: Booleans
-    starts: Indices
-    counts: Indices
-
-
-def mesh_edges(
-    mesh: Mesh, part_numbers: Sequence[int] | None = None, crease_angle: float = DRAWN_CREASE
-) -> MeshEdges:
-    """The edges of the polygons of some parts of the mesh, or of all parts.
-
-    An edge where polygons meet at more than `crease_angle`, 0 to 90 degrees, is a crease. The winding
-    of polygons does not matter. An edge of more than two polygons is smooth if they lie in two planes that
-    continue each other, as in a sheet with two polygons at every place, one for each face. Polygons without
-    area have no edges.
-    """
-    parts, coordinate_rows, node_rows = mesh.part_numbers, mesh.coordinates.T, mesh.node_numbers.T
+    coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
+    places = places_of_corners(coordinate_rows, node_rows)
     normals = np.empty((3, node_rows.shape[1]))
     for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
         normals[:, chunk] = polygon_normals(np.take(coordinate_rows, node_rows[:, chunk], axis=1))
-    has_edges = (normals != 0).any(axis=0)
-    if part_numbers is not None:
-        has_edges &= np.isin(parts, list(part_numbers))
-    sides = _sides(places_of_corners(coordinate_rows, node_rows), has_edges)
-    polygons = sides.corners % max(len(parts), 1)
-    first = np.repeat(sides.starts, sides.counts)
+    # Polygons without area have no creases.
+    are_drawn = (normals != 0).any(axis=0) & (numbers[mesh.part_numbers] != STAGE)
+    least = np.cos(np.radians(DRAWN_CREASE)) - 1e-9
+    creases = [np.empty((2, 0), np.intp)]
+    for one, other in corners_at_shared_edges(places, mesh.part_numbers):
+        cosines = dot(np.take(normals, one >> 2, axis=1), np.take(normals, other >> 2, axis=1))
+        corners = one[(np.abs(cosines) < least) & are_drawn[one >> 2] & are_drawn[other >> 2]]
+        polygons = corners >> 2
+        creases.append(np.stack([node_rows[corners & 3, polygons], node_rows[(corners + 1) & 3, polygons]]))
+    return np.concatenate(creases, axis=1)
 
-    # Compare each polygon of an edge with the edge's first polygon: the cosine is 1 where it folds back onto
-    # the first, and -1 where it continues the first, whatever their winding.
-    cosines = dot(np.take(normals, polygons.take(first), axis=1), np.take(normals, polygons, axis=1))
-    np.negative(cosines, out=cosines, where=sides.forward != sides.forward.take(first))
-    least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
-    continues, folds = cosines <= -least_cosine, cosines >= least_cosine
-    same_part = parts.take(polygons) == parts.take(polygons.take(first))
-    if len(first):
-        smooth = np.logical_and.reduceat((continues | folds) & same_part, sides.starts)
-        smooth &= np.logical_or.reduceat(continues, sides.starts)
-    else:
-        smooth = np.zeros(0, np.bool_)
 
-    # Take the first polygon of each smooth edge, and a polygon that continues it.
-    edge = np.repeat(np.arange(len(sides.starts)), sides.counts)
-    other = sides.starts.copy()
-    other[edge[continues]] = np.flatnonzero(continues)
-    pairs = np.stack([sides.starts[smooth], other[smooth]])
-    corners = sides.corners.take(sides.starts)
-    nodes = np.stack([node_rows.ravel()[corners], np.roll(node_rows, -1, axis=0).ravel()[corners]], axis=1)
-    tables = (
-        _longest(nodes[~smooth], mesh.coordinates),
-        nodes[smooth],
-        polygons[pairs],
-        np.equal(*sides.forward[pairs]),
-        normals,
-        dot(normals, np.take(coordinate_rows, node_rows[0], axis=1)),
+def crease_pixels(picture: DepthPicture, coordinates: Floats, creases: Indices) -> Booleans:
+    """The pixels at which a depth picture sees creases, (lines, elements); `coordinates` are (nodes, 3)."""
+    view, depths, focal = picture.view, picture.depths, picture.focal
+    ends = [rotated(view.axes, np.take(coordinates.T, nodes, axis=1), view.eye) for nodes in creases]
+    # Leave out the creases that pass the eye.
+    before_eye = np.flatnonzero((ends[0][2] > 0) & (ends[1][2] > 0))
+    size = np.array(depths.shape[::-1])[:, None]
+    start, end = (np.take(each, before_eye, axis=1) for each in ends)
+    # Screen x and y, and inverse depth, change along a crease in proportion to each other.
+    start, end = (
+        np.concatenate([each[:2] * (focal / each[2]) + size / 2, 1 / each[2:]]) for each in (start, end)
     )
-    return MeshEdges(mesh.coordinates, *map(read_only, tables))
+    step = end - start
+    # Find the shares of each crease at which it enters and leaves the picture.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        borders = -start[:2] / step[:2], (size - start[:2]) / step[:2]
+    enters = np.fmin(*borders).max(axis=0, initial=0.0)
+    leaves = np.fmax(*borders).min(axis=0, initial=1.0)
+    inside = np.flatnonzero(enters < leaves)
+    start, step, enters, leaves = start[:, inside], step[:, inside], enters[inside], leaves[inside]
+
+    # Place points along each crease, at most a pixel apart, and compare their depths with the picture's.
+    count = np.ceil(np.abs(step[:2]).max(axis=0, initial=0.0) * (leaves - enters)).astype(np.int64) + 1
+    along = (runs(np.zeros_like(count), count) + 0.5) / np.repeat(count, count)
+    along = np.repeat(enters, count) + along * np.repeat(leaves - enters, count)
+    x, y, inverse_depth = np.repeat(start, count, axis=1) + along * np.repeat(step, count, axis=1)
+    places = y.astype(np.intp).clip(0, size[1] - 1) * size[0] + x.astype(np.intp).clip(0, size[0] - 1)
+    farthest = around(np.maximum, depths, -np.inf).ravel().take(places)
+    is_seen = 1 / inverse_depth <= farthest * (1 + BEHIND / focal)
+    pixels = np.zeros(depths.shape, np.bool_)
+    pixels.ravel()[places[is_seen]] = True
+    pixels &= picture.parts != NO_PART
+    return pixels
 
 
-def _sides(places: Indices, has_edges: Booleans) -> _Sides:
-    """The sides of some polygons; `places` is (4, polygons)."""
-    ends = np.roll(places, -1, axis=0)
-    corners = np.flatnonzero((places != ends) & has_edges)
-    start, end = places.ravel()[corners], ends.ravel()[corners]
-    keys = edge_keys(start, end, int(places.max(initial=0)) + 1)
-    order = np.argsort(keys, kind="stable")
-    starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
-    return _Sides(corners[order], (start < end)[order], starts, np.diff(starts, append=len(corners)))
+def around(most: np.ufunc, table: AnyArray, beside: float) -> AnyArray:
+    """The sum or the largest, say, of the nine pixels around each pixel. `beside` is past the edges."""
+    padded = np.pad(table, 1, constant_values=beside)
+    across = most(most(padded[:, :-2], padded[:, 1:-1]), padded[:, 2:])
+    of_nine: AnyArray = most(most(across[:-2], across[1:-1]), across[2:])
+    return of_nine
 
 
-def _longest(edges: Indices, coordinates: Floats) -> Indices:
-    """The longest edges of (n, 2), at most MOST_FEATURES, in their order."""
-    if len(edges) <= MOST_FEATURES:
-        return edges
-    steps = np.abs(coordinates[edges[:, 0]] - coordinates[edges[:, 1]]).max(axis=1)
-    return edges[np.sort(np.argsort(-steps, kind="stable")[:MOST_FEATURES])]
+# The words of the lines.
 
 
-# The strokes of DISPLAY VIEW: the edges of the mesh as the eye sees them, small, in an area.
-#
-# Paper: Figure 5, "A small mesh image of the current view can be generated by selecting DISPLAY VIEW".
+def line_words(picture: DepthPicture, mesh: Mesh, creases: Indices) -> Words:
+    """The words of all lines of a depth picture, (lines, elements), with NIGHT between them."""
+    outlines, borders = outlines_and_borders(picture)
+    features = (borders | crease_pixels(picture, mesh.coordinates, creases)) & ~outlines
+    # Beside an outline, keep only the ends of lines that lead to it, and within the object no single pixels.
+    apart = features & ~around(np.logical_or, outlines, False)
+    features &= around(np.logical_or, apart, False)
+    is_lone = around(np.add, (outlines | features).astype(np.uint8), 0) == 1
+    is_lone &= around(np.maximum, picture.depths, 0.0) < np.inf
+    features &= ~is_lone
+    outlines &= ~is_lone
+    words = np.full(outlines.shape, NIGHT, np.uint16)
+    words[features], words[outlines] = GRAY, LIGHT_GRAY
+    words[outlines & (picture.parts == STAGE)] = SLATE
+    return words
 
 
-def perspective_strokes(coordinates: Floats, edges: Indices, view: View, area: Area) -> Floats:
-    """The strokes of edges in the picture of a view that fills an area, (strokes, 4).
+class SideLines(NamedTuple):
+    """The words of the lines in one of the three views, (lines, elements) of its area."""
 
-    `coordinates` is (nodes, 3), `edges` (n, 2) the nodes that each edge joins. The picture has the lines and
-    elements of the area. Edges are clipped at a near plane first, NEAR as a fraction of the depth of the
-    farthest node, and their strokes by the area.
-    """
-    camera = rotated(view.axes, coordinates.T, view.eye)
-    starts, ends = np.take(camera, edges[:, 0], axis=1), np.take(camera, edges[:, 1], axis=1)
-    farthest = float(max(starts[2].max(initial=0.0), ends[2].max(initial=0.0)))
-    near = NEAR * farthest or 1.0
-    starts, ends = _beyond(near, starts, ends)
-    focal = focal_length(area.height, area.width, view.field_of_view)
-    middle = np.array(area.middle)
-    return clipped(between(*(middle + (focal * points[:2] / points[2]).T for points in (starts, ends))), area)
+    views: OrthographicViews
+    words: Words
 
-
-def _beyond(near: float, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
-    """The parts beyond the near plane of lines from starts to ends, (3, n) in camera space."""
-    before = np.flatnonzero((starts[2] >= near) | (ends[2] >= near))
-    starts, ends = starts[:, before], ends[:, before]
-    step = ends - starts
-    divisor = np.where(step[2] == 0, 1.0, step[2])
-    crossings = starts + (near - starts[2]) / divisor * step
-    crossings[2] = near
-    return np.where(starts[2] < near, crossings, starts), np.where(ends[2] < near, crossings, ends)
-
-
-# Silhouettes: the smooth edges of a mesh between a polygon that faces the viewer and a polygon that does not.
-#
-# The viewer is far away in a direction, as in the three views, or an eye.
-
-EDGE_ON: Final = 1e-9
-"""Assumed: a polygon seen under a smaller sine than this is edge-on, and does not face the viewer.
-
-Otherwise rounding would decide about the sides of a cylinder seen along its axis.
-"""
-
-
-def silhouette_toward(edges: MeshEdges, toward: Sequence[float]) -> Indices:
-    """The nodes of the silhouette for a viewer far away, (n, 2); `toward` is the unit vector to it."""
-    return _between(edges, _heights(edges.normals, toward) > EDGE_ON)
-
-
-def silhouette_from(edges: MeshEdges, eye: Sequence[float]) -> Indices:
-    """The nodes of the silhouette that an eye at a point sees, (n, 2)."""
-    return _between(edges, _heights(edges.normals, eye) > edges.offsets)
-
-
-def _heights(normals: Floats, vector: Sequence[float]) -> Floats:
-    """The dot product of each normal, (3, n), with a vector."""
-    x, y, z = vector
-    heights: Floats = normals[0] * x
-    heights += normals[1] * y
-    heights += normals[2] * z
-    return heights
-
-
-def _between(edges: MeshEdges, facing: Booleans) -> Indices:
-    """The smooth edges between a polygon that faces the viewer and a polygon that does not.
-
-    If two polygons have opposite winding, the front of one continues the back of the other: a silhouette
-    passes between them if both face the viewer, or neither does.
-    """
-    one, other = edges.polygons
-    differs = facing.take(one) ^ facing.take(other)
-    differs ^= edges.same_direction
-    return np.take(edges.smooth, np.flatnonzero(differs), axis=0)
-
-
-class ObjectStrokes(NamedTuple):
-    """The strokes of an object in a view from pixel to pixel, each (n, 4).
-
-    `stage` are the features of the stage's parts; features and silhouette are the object's own.
-    """
-
-    stage: Floats
-    features: Floats
-    silhouette: Floats
-
-
-class _MeshLines(NamedTuple):
-    """The edges of a mesh with its parts; `of_side` has the features and the silhouette in each view."""
-
-    mesh: Mesh
-    parts: tuple[Part, ...]
-    object_numbers: list[int]
-    edges: MeshEdges
-    stage: Indices
-    of_side: dict[str, tuple[Indices, Indices]]
-    is_without_hidden: set[str]
+    def moved(self, side: ViewSide, views: OrthographicViews) -> Words:
+        """The words moved to other views, whose lines are not found yet; pixels are left out or repeated."""
+        if views is self.views:
+            return self.words
+        places = []
+        for count, axis, sign in zip(self.words.shape, (side.up, side.right), (-1, 1), strict=True):
+            shift = sign * (views.center[axis] - self.views.center[axis]) * self.views.scale
+            from_middle = np.arange(count) - (count - 1) / 2
+            place = from_middle * (self.views.scale / views.scale) + shift + (count - 1) / 2
+            # The pixels from beyond the area have the last place.
+            places.append(np.rint(place.clip(-1, count)).astype(np.intp) % (count + 1))
+        beyond = np.pad(self.words, (0, 1), constant_values=NIGHT)
+        words: Words = beyond.take(places[0], axis=0).take(places[1], axis=1)
+        return words
 
 
 class ObjectLines:
-    """The lines of the object of a scene, computed once for a mesh."""
+    """The lines of the object of a scene; what did not change is not computed again."""
 
     def __init__(self) -> None:
-        self._mesh_lines: _MeshLines | None = None
-        self._strokes: dict[str, Cached[ObjectStrokes]] = {side.name: Cached() for side in SIDES}
+        self._drawn: Cached[tuple[Indices, Indices]] = Cached()
+        self._sides: dict[str, SideLines] = {}
+        self._page: Cached[Words] = Cached()
+        self._seen: Cached[Words] = Cached()
 
-    def of_side(self, scene: Scene, views: OrthographicViews, side: ViewSide) -> ObjectStrokes:
-        """The lines in one of the three views, the same as before if nothing changed."""
-        lines, coordinates = self._of(scene), scene.mesh.coordinates
-        edges = lines.of_side[side.name]
+    def page(self, scene: Scene, views: OrthographicViews) -> Words:
+        """The words of the whole screen, read-only, with the lines that are found so far."""
+        self._object_of(scene)
+        found = [self._sides.get(side.name) for side in SIDES]
 
-        def strokes() -> ObjectStrokes:
-            return _drawn(*(views.strokes(side, coordinates, each) for each in (lines.stage, *edges)))
+        def page() -> Words:
+            words = np.full((HEIGHT, WIDTH), NIGHT, np.uint16)
+            for area in LINES_BETWEEN:
+                _part(words, area)[:] = SLATE
+            for side, lines in zip(SIDES, found, strict=True):
+                if lines is not None:
+                    _part(words, side.area)[:] = lines.moved(side, views)
+            return read_only(words)
 
-        return self._strokes[side.name].of(strokes, edges, views)
+        return self._page.of(page, views, *found)
 
-    def leave_out_hidden(self, scene: Scene) -> bool:
-        """Leave out the hidden edges of the next view; returns False if all views are done."""
-        lines = self._of(scene)
-        left = [side for side in SIDES if side.name not in lines.is_without_hidden]
-        if not left:
-            return False
-        side, coordinates = left[0], scene.mesh.coordinates
-        lines.is_without_hidden.add(side.name)
-        depths = depths_toward(scene.mesh, side, lines.object_numbers)
-        if depths is not None:
-            features, silhouette = lines.of_side[side.name]
-            lines.of_side[side.name] = (
-                without_hidden(features, coordinates, depths),
-                without_hidden(silhouette, coordinates, depths),
-            )
-        return True
+    def find_next(self, scene: Scene, views: OrthographicViews) -> bool:
+        """Find the lines of the next of the three views; returns False if all are found."""
+        numbers, creases = self._object_of(scene)
+        for side in SIDES:
+            found, area = self._sides.get(side.name), side.area
+            if found is None or found.views is not views:
+                view = view_of_side(side, views)
+                picture = depth_picture(scene.mesh, view, area.height, area.width, numbers)
+                words = line_words(picture, scene.mesh, creases)
+                self._sides[side.name] = SideLines(views, words)
+                return True
+        return False
 
-    def of_eye(self, scene: Scene, area: Area, visible: VisibleDepths | None = None) -> ObjectStrokes:
-        """The lines as the eye sees them, in an area of the shape of the picture.
+    def of_points(self, scene: Scene, points: VisiblePoints, area: Area) -> Words:
+        """The words of the lines as the eye sees them, (lines, elements) of an area.
 
-        Given the visible depths of the picture, hidden lines are left out.
+        The lines of a coarser picture are as coarse as the picture.
         """
-        lines = self._of(scene)
-        coordinates, view = scene.mesh.coordinates, scene.view
-        edges = [lines.stage, lines.edges.features, silhouette_from(lines.edges, view.eye)]
-        if visible is not None:
-            edges = [without_hidden(each, coordinates, visible) for each in edges]
-        return _drawn(*(perspective_strokes(coordinates, each, view, area) for each in edges))
+        numbers, creases = self._object_of(scene)
 
-    def _of(self, scene: Scene) -> _MeshLines:
-        lines = self._mesh_lines
-        if lines is None or lines.mesh is not scene.mesh or lines.parts != scene.parts:
-            used = list(scene.mesh.parts_in_use)
-            numbers = [number for number in used if not scene.parts[number].stage] or used
-            stage = [number for number in used if number not in numbers]
-            edges = mesh_edges(scene.mesh, numbers)
-            outline = mesh_edges(scene.mesh, stage).features if stage else np.empty((0, 2), np.intp)
-            of_side = {side.name: (edges.features, silhouette_toward(edges, side.toward)) for side in SIDES}
-            lines = _MeshLines(scene.mesh, scene.parts, numbers, edges, outline, of_side, set())
-            self._mesh_lines = lines
-        return lines
+        def words() -> Words:
+            lines, elements = min(points.lines, area.height), min(points.elements, area.width)
+            picture = depth_picture_of_points(points, lines, elements, numbers)
+            small = line_words(picture, scene.mesh, creases)
+            return sampled(small, area.height, area.width)
+
+        return self._seen.of(words, creases, points)
+
+    def _object_of(self, scene: Scene) -> tuple[Indices, Indices]:
+        """The numbers of the parts, and the creases. If all parts are stage, they are the object."""
+        mesh = scene.mesh
+
+        def compute() -> tuple[Indices, Indices]:
+            self._sides = {}
+            is_stage = np.array([part.stage for part in scene.parts], np.bool_)
+            is_stage &= not is_stage[list(mesh.parts_in_use)].all()
+            numbers = np.where(is_stage, STAGE, np.arange(len(is_stage)))
+            return numbers, crease_edges(mesh, numbers)
+
+        return self._drawn.of(compute, mesh, scene.parts)
 
 
-def _drawn(*strokes: Floats) -> ObjectStrokes:
-    return ObjectStrokes(*(drawn(each).astype(np.float64) for each in strokes))
+def _part(words: Words, area: Area) -> Words:
+    """The words in an area."""
+    return words[area.top : area.bottom + 1, area.left : area.right + 1]

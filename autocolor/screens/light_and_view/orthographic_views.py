@@ -14,12 +14,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, bounds_of
+from autocolor.arrays import Floats, bounds_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
 from autocolor.scene.defaults import object_bounds
 from autocolor.scene.scene import Scene
 from autocolor.screens.picture.picture_edits import target_of
-from autocolor.widgets.items import Area, between, clipped
+from autocolor.widgets.items import Area
 
 # The areas of the views on the light and view screen.
 
@@ -36,6 +36,9 @@ SIDE_AREA: Final = Area(256, 232, 503, 455)
 Assumed: as on an engineering drawing, the top view is above the front view, and the side view beside it. The
 fourth quarter is for DISPLAY VIEW. Eight lines are left free at the bottom.
 """
+
+LINES_BETWEEN: Final = (Area(251, 0, 252, 463), Area(0, 227, 503, 228))
+"""The lines between the quarters."""
 
 
 def area_of_picture(area: Area = PICTURE_AREA, aspect: float = PICTURE_ASPECT) -> Area:
@@ -99,6 +102,31 @@ def side_at(element: float, line: float) -> ViewSide | None:
     return next((side for side in SIDES if side.area.has(element, line)), None)
 
 
+class PointMark(NamedTuple):
+    """The mark of a point in a view: its element and line, and those of the point, `at`.
+
+    They differ if the point is outside. It is `ratio` times as far from the end of its arrow as the mark is.
+    """
+
+    place: tuple[float, float]
+    at: tuple[float, float]
+    ratio: float = 1.0
+
+    @property
+    def is_outside(self) -> bool:
+        """Whether the mark is an arrow at the edge."""
+        return self.place != self.at
+
+    def dragged(self, element: int, line: int) -> tuple[int, int]:
+        """Where the point goes if the mark goes to a pixel: as many times as far as the point is farther."""
+        to = (element, line)
+        across, down = (
+            round(at + self.ratio * (now - place))
+            for at, place, now in zip(self.at, self.place, to, strict=True)
+        )
+        return across, down
+
+
 @dataclass(frozen=True)
 class OrthographicViews:
     """The coordinates in the middle of every area, and the scale of all views, in elements for each unit."""
@@ -122,31 +150,28 @@ class OrthographicViews:
             line - (point[side.up] - self.center[side.up]) * self.scale,
         )
 
-    def mark_position(self, side: ViewSide, point: Vector, end: Vector | None) -> tuple[float, float]:
-        """The element and line of the mark of a point: its position, or a position at the edge of the area.
+    def mark(self, side: ViewSide, point: Vector, end: Vector | None) -> PointMark:
+        """The mark of a point: at its position, or at the edge of the area for a point outside.
 
-        If the point is outside the area, its mark is where the line to `end`, the end of its arrow, comes
-        into the area. Without an arrow, the line leads to the middle of the area. Assumed: so that the lights
-        and the eye can be found and grabbed when the views are as near as the object needs.
+        The mark of a point outside is where the line to `end`, the end of its arrow, comes into the area.
+        Without an arrow, the line leads to the middle of the area. Assumed: so that the lights and the eye
+        can be found and dragged when the views are as near as the object needs.
         """
         at = self.position(side, point)
         if side.area.has(*at):
-            return at
+            return PointMark(at, at)
         area = side.area.inset(EDGE)
         to = area.middle if end is None else self.position(side, end)
         if not area.has(*to):
             to = area.middle
-        # Each edge that the point is beyond is met at a share of the way from `to`; the nearest one counts.
+        step = at[0] - to[0], at[1] - to[1]
+        # On the way from `to`, the nearest edge counts.
         share = min(
-            (edge - start) / (beyond - start)
-            for start, beyond, low, high in (
-                (to[0], at[0], area.left, area.right),
-                (to[1], at[1], area.top, area.bottom),
-            )
-            for edge in (low, high)
-            if min(start, beyond) <= edge <= max(start, beyond) and start != beyond
+            ((high if along > 0 else low) - start) / along
+            for start, along, low, high in zip(to, step, area[:2], area[2:], strict=True)
+            if along
         )
-        return to[0] + share * (at[0] - to[0]), to[1] + share * (at[1] - to[1])
+        return PointMark((to[0] + share * step[0], to[1] + share * step[1]), at, 1 / share if share else 1.0)
 
     def placed(self, side: ViewSide, point: Vector, element: int, line: int) -> Vector:
         """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.
@@ -169,14 +194,6 @@ class OrthographicViews:
         """The coordinate, bounded and rounded to decimals that tell tenths of a pixel; 0 has no sign."""
         rounded = round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
         return max(-LARGEST_COORDINATE, min(LARGEST_COORDINATE, rounded))
-
-    def strokes(self, side: ViewSide, coordinates: Floats, edges: Indices) -> Floats:
-        """The strokes of edges in one of the views, clipped by its area, (strokes, 4).
-
-        `coordinates` is (nodes, 3), `edges` (n, 2) the nodes that each edge joins.
-        """
-        starts, ends = (self.positions(side, np.take(coordinates, nodes, axis=0)) for nodes in edges.T)
-        return clipped(between(starts, ends), side.area)
 
     def zoomed(self, ratio: float) -> OrthographicViews:
         """The views with a scale that is `ratio` times as large, nearer above 1, around the same center.

@@ -255,7 +255,7 @@ def test_a_failed_computation_is_not_cached() -> None:
 
 PAGES = {
     "picture": 473489948,
-    "light and view": 1944307095,
+    "light and view": 2034175153,
     "lights": 4282269980,
     "reflectance": 571573069,
     "mixing": 1_328_086_564,

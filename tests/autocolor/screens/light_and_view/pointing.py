@@ -24,12 +24,18 @@ def boxed(*lights: Light) -> Scene:
     return scene_of(boxes().mesh, surfaces=surfaces, lights=list(lights), view=view, name="box")
 
 
-def opened(scene: Scene) -> Hand:
-    """A hand on the unit of a display that shows the light and view screen of a scene."""
+def opened(scene: Scene, shows_all: bool = True) -> Hand:
+    """A hand on a display that shows the light and view screen of a scene, or its object alone."""
     viewer = Viewer(scene, Ramtek9300())
     viewer.session.turn_to("light and view")
     viewer.tell("")
-    return Hand(viewer)
+    hand = Hand(viewer)
+    if shows_all:
+        screen_of(hand).fit()
+    while viewer.board.screen.idle():
+        pass
+    viewer.tell("")
+    return hand
 
 
 def screen_of(hand: Hand) -> LightAndViewScreen:

@@ -16,7 +16,6 @@ from autocolor.screens.light_and_view.marks import (
     Cross,
     arrow,
     cone_outline,
-    crosses_of,
     flap_marks,
     light_marks,
     numerals,
@@ -40,9 +39,6 @@ def test_an_arrow_that_points_at_the_viewer_has_no_head_and_a_short_one_a_head_o
     assert arrow((5, 5), (5, 5)).tolist() == [[5, 5, 5, 5]]
     assert [len(arrow((5, 5), (x, 5))) for x in (7.9, 8.0)] == [1, 3]
     assert arrow((0, 0), (0, 8))[1, 1] == pytest.approx(4)
-    light = Light("key", (0.0, 0.0, 5.0), aim=(0.0, 0.0, 0.0))
-    assert crosses_of(VIEWS, TOP, 1, light)[0].arrow == (0.0, 0.0)
-    assert crosses_of(VIEWS, FRONT, 1, light)[0].arrow == pytest.approx((0.0, 1.0))
 
 
 def rim_of(light: Light, end: Vector) -> Floats:
@@ -62,18 +58,18 @@ def rim_of(light: Light, end: Vector) -> Floats:
 def test_a_cone_that_points_at_the_viewer_is_a_circle() -> None:
     for up in (2.0, -2.0):
         light = Light("key", (0.0, 0.0, 0.0), aim=(0.0, 0.0, up), cone_angle=30.0)
-        (rim,) = cone_outline(VIEWS, TOP, light, (0.0, 0.0, up))
-        assert len(rim) == RIM_SIDES + 1
-        assert np.hypot(*(rim - TOP.area.middle).T) == pytest.approx(np.full(RIM_SIDES + 1, 10.0))
+        rim = cone_outline(VIEWS, TOP, light, (0.0, 0.0, up))
+        assert len(rim) == RIM_SIDES
+        assert np.hypot(*(rim[:, :2] - TOP.area.middle).T) == pytest.approx(np.full(RIM_SIDES, 10.0))
 
 
 def test_a_cone_of_ninety_degrees_seen_from_the_side_is_a_line_across_and_of_180_none() -> None:
     light = Light("key", (0.0, 0.0, 0.0), aim=(2.0, 0.0, 0.0), cone_angle=90.0)
-    outline = np.concatenate(cone_outline(VIEWS, FRONT, light, (2.0, 0.0, 0.0)))
+    outline = cone_outline(VIEWS, FRONT, light, (2.0, 0.0, 0.0)).reshape(-1, 2)
     assert np.ptp(outline[:, 0]) == pytest.approx(0, abs=1e-9)
     assert np.ptp(outline[:, 1]) == pytest.approx(40, rel=0.01)
     everything = light.replace(cone_angle=180.0)
-    assert all(cone_outline(VIEWS, side, everything, (2.0, 0.0, 0.0)) == () for side in SIDES)
+    assert not any(len(cone_outline(VIEWS, side, everything, (2.0, 0.0, 0.0))) for side in SIDES)
 
 
 @given(vectors(), directions(), numbers(1, 179), st.sampled_from(SIDES))
@@ -92,16 +88,16 @@ def test_the_lines_are_tangents_of_the_rim(
     rim = VIEWS.positions(side, rim_of(light, end))
     at = np.array(VIEWS.position(side, position))
     if math.acos(min(along, 1.0)) < half:
-        assert len(outline) == 1
+        assert len(outline) == RIM_SIDES
         return
     assert len(outline) == 2
-    for start, touching in outline:
+    for start, touching in outline.reshape(2, 2, 2):
         assert start == pytest.approx(at)
         # It touches the rim, and the rim lies on one side of it.
         assert np.hypot(*(rim - touching).T).min() < 0.2
         step = (touching - start) / np.linalg.norm(touching - start)
         beside = step[0] * (rim - start)[:, 1] - step[1] * (rim - start)[:, 0]
-        assert min(beside.max(), (-beside).max()) < 1e-6
+        assert min(beside.max(), (-beside).max()) < 0.1
 
 
 def test_the_corners_are_those_of_the_picture_as_deep_as_the_target() -> None:
@@ -136,12 +132,9 @@ AREA = Area(0, 0, 247, 223)
 crosses = st.builds(Cross, st.integers(1, 16), st.integers(-20, 260), st.integers(-20, 240))
 
 
-def test_a_numeral_makes_way_for_the_arrow_of_its_light_and_for_what_is_there() -> None:
+def test_a_numeral_makes_way_for_what_is_there() -> None:
     ((_, area),) = numerals([Cross(3, 100, 100)], AREA, [])
     assert area == (106, 86, 112, 94)
-    ((_, area),) = numerals([Cross(12, 100, 100, (0.8, -0.6))], AREA, [])
-    assert area.right < 96
-    assert area.width == 14
     ((_, area),) = numerals([Cross(1, 100, 100)], AREA, [Area(103, 80, 120, 99)])
     assert not area.overlaps(Area(103, 80, 120, 99))
 

@@ -1,178 +1,177 @@
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Scene, View, scene_of
-from autocolor.checks import Vector
-from autocolor.screens.light_and_view import object_lines as module
+from autocolor.arrays import Booleans, Words
 from autocolor.screens.light_and_view.object_lines import (
-    MeshEdges,
+    NO_PART,
+    STAGE,
     ObjectLines,
-    depths_toward,
-    mesh_edges,
-    perspective_strokes,
-    silhouette_from,
-    silhouette_toward,
-    visible_depths,
-    without_hidden,
+    crease_edges,
+    crease_pixels,
+    depth_picture,
+    depth_picture_of_points,
+    line_words,
+    outlines_and_borders,
+    view_of_side,
 )
 from autocolor.screens.light_and_view.orthographic_views import (
     FRONT,
-    PICTURE_AREA,
+    SIDE,
     SIDES,
     TOP,
+    OrthographicViews,
     ViewSide,
-    area_of_picture,
     fitted_views,
 )
-from autocolor.testing import directions, meshes, views
-from autocolor.visibility.projection import projection
+from autocolor.testing import meshes, views
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from autocolor.widgets.items import Area
-from tests.small import CUBE_NODES, CUBE_QUADS, cube, grid, sphere, wall
+from autocolor.widgets.items import GRAY, LIGHT_GRAY, NIGHT, SLATE, Area
+from tests.small import CUBE_NODES, CUBE_QUADS, cube, grid, sphere
 
-AREA = area_of_picture(PICTURE_AREA)
 EYE = View((4.0, -5.0, 3.0), target=(0.5, 0.5, 0.5))
 
 
-def on_a_floor() -> Scene:
-    """A cube on a stage."""
-    floor = grid(2, 2, (-2.0, -2.0, -0.1), (5.0, 0, 0), (0, 5.0, 0), "floor")
-    return scene_of(Mesh.joined([cube(), floor]), view=EYE).with_part("floor", stage=True)
+def found(scene: Scene, views: OrthographicViews) -> ObjectLines:
+    """The lines of a scene, found in all views."""
+    lines = ObjectLines()
+    while lines.find_next(scene, views):
+        pass
+    return lines
 
 
-def test_a_ball_is_drawn_as_its_outline() -> None:
-    scene = scene_of(sphere(32, 16), view=EYE)
-    views = fitted_views(scene.object_coordinates)
-    strokes = ObjectLines().of_side(scene, views, FRONT)
-    assert len(strokes.features) == 0
-    ends = strokes.silhouette.reshape(-1, 2)
-    assert np.hypot(*(ends - FRONT.area.middle).T) == pytest.approx(views.scale, abs=1.5)
+def words_in(scene: Scene, side: ViewSide, views: OrthographicViews | None = None) -> Words:
+    """The words of the lines in one of the views, which is fitted to the object."""
+    fitted = views or fitted_views(scene.object_coordinates)
+    return part_of(found(scene, fitted).page(scene, fitted), side.area)
 
 
-def test_the_features_of_a_stage_are_apart() -> None:
-    scene = on_a_floor()
-    views = fitted_views(scene.object_coordinates).zoomed(0.1)
-    strokes = ObjectLines().of_side(scene, views, TOP)
-    # The border of two by two polygons, without the edges between them.
-    assert len(strokes.stage) == 8
-    assert len(strokes.features) == 4
-    assert np.ptp(strokes.stage[:, 0]) > 4 * np.ptp(strokes.features[:, 0])
+def part_of(words: Words, area: Area) -> Words:
+    return words[area.top : area.bottom + 1, area.left : area.right + 1]
 
 
-def test_what_is_hidden_is_left_out_one_view_at_a_time() -> None:
-    # The ball within the cube is seen from no side.
+def box(pixels: Booleans) -> tuple[int, int, int, int]:
+    """The first and the last line and element of some pixels."""
+    lines, elements = np.nonzero(pixels)
+    return int(lines.min()), int(lines.max()), int(elements.min()), int(elements.max())
+
+
+def test_a_ball_is_drawn_as_a_circle_without_a_gap() -> None:
+    scene = scene_of(sphere(64, 32), view=EYE)
+    words = words_in(scene, FRONT)
+    assert set(np.unique(words).tolist()) == {NIGHT, LIGHT_GRAY}
+    lines, elements = np.nonzero(words == LIGHT_GRAY)
+    middle = FRONT.area.width / 2, FRONT.area.height / 2
+    x, y = elements + 0.5 - middle[0], lines + 0.5 - middle[1]
+    scale = fitted_views(scene.object_coordinates).scale
+    assert np.hypot(x, y) == pytest.approx(scale, abs=1.6)
+    degrees = np.sort(np.degrees(np.arctan2(y, x)))
+    assert np.diff(degrees, append=degrees[0] + 360).max() < 1.5 * np.degrees(1 / scale) + 0.5
+    # The circle is one pixel wide: it has no more pixels than its eight octants have steps.
+    assert len(x) <= 8 * scale * np.sin(np.pi / 4) + 16
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_cube_is_drawn_as_its_outline_where_the_views_have_its_corners(side: ViewSide) -> None:
+    scene = scene_of(cube(), view=EYE)
+    fitted = fitted_views(scene.object_coordinates)
+    words = words_in(scene, side)
+    assert set(np.unique(words).tolist()) == {NIGHT, LIGHT_GRAY}
+    left, bottom = fitted.position(side, (0, 0, 0))
+    right, top = fitted.position(side, (1, 1, 1))
+    wanted = (top - side.area.top, bottom - side.area.top, left - side.area.left, right - side.area.left)
+    assert box(words == LIGHT_GRAY) == pytest.approx(wanted, abs=1)
+    # An outline of one pixel has about as many pixels as its edges are long.
+    assert (words == LIGHT_GRAY).sum() == pytest.approx(4 * fitted.scale, abs=8)
+
+
+def test_an_eye_sees_three_creases_of_a_cube_and_its_outline() -> None:
+    mesh, numbers = cube(), np.arange(1)
+    picture = depth_picture(mesh, EYE, 200, 240, numbers)
+    creases = crease_edges(mesh, numbers)
+    assert creases.shape == (2, 12)
+    words = line_words(picture, mesh, creases)
+    corner = crease_pixels(picture, mesh.coordinates, creases[:, (creases == 6).any(axis=0)])
+    assert (words == GRAY).sum() > 60
+    assert not (crease_pixels(picture, mesh.coordinates, creases) & (picture.parts == NO_PART)).any()
+    # No edge at the corner farthest from the eye is drawn.
+    hidden = creases[:, (mesh.coordinates[creases] == (0, 1, 0)).all(axis=-1).any(axis=0)]
+    assert hidden.shape == (2, 3)
+    inside = ~outlines_and_borders(picture)[0]
+    assert (crease_pixels(picture, mesh.coordinates, hidden) & inside).sum() < 20
+    assert corner.shape == (200, 240)
+
+
+def test_a_thing_within_another_is_drawn_in_no_view() -> None:
     inner = sphere(16, 9)
     ball = Mesh(inner.coordinates * 0.2 + 0.5, inner.node_numbers, inner.part_numbers, ("ball",))
-    scene = scene_of(Mesh.joined([ball, cube()]), view=EYE)
-    views, lines = fitted_views(scene.object_coordinates), ObjectLines()
-    assert all(len(lines.of_side(scene, views, side).silhouette) for side in SIDES)
-    for number, side in enumerate(SIDES, start=1):
-        assert lines.leave_out_hidden(scene)
-        assert len(lines.of_side(scene, views, side).silhouette) == 0
-        assert len(lines.of_side(scene, views, side).features) == 4
-        left = [each for each in SIDES if len(lines.of_side(scene, views, each).silhouette)]
-        assert len(left) == 3 - number
-    assert not lines.leave_out_hidden(scene)
-
-
-def test_the_lines_of_a_cube_are_its_edges_or_those_that_are_not_hidden() -> None:
-    scene = scene_of(cube(), view=EYE)
-    lines = ObjectLines()
-    assert len(lines.of_eye(scene, AREA).features) == 12
-    visible = visible_depths(visible_surfaces(scene.mesh, EYE, (1,), 480, 640))
-    assert len(lines.of_eye(scene, AREA, visible).features) == 9
-    # From the side, edges cover each other in pairs, and those toward the viewer are points.
-    views = fitted_views(scene.object_coordinates)
+    both = scene_of(Mesh.joined([ball, cube()]), view=EYE)
+    alone = scene_of(cube(), view=EYE)
     for side in SIDES:
-        strokes = lines.of_side(scene, views, side)
-        assert list(map(len, strokes)) == [0, 4, 0]
+        assert np.array_equal(words_in(both, side), words_in(alone, side))
+
+
+def test_a_thing_before_another_has_an_outline_and_a_part_a_border() -> None:
+    wall = grid(1, 1, (-2, 0, -2), (4, 0, 0), (0, 0, 4), "wall")
+    for distance, word in ((-0.5, LIGHT_GRAY), (-1e-9, GRAY)):
+        plate = grid(1, 1, (-1, distance, -1), (2, 0, 0), (0, 0, 2), "plate")
+        scene = scene_of(Mesh.joined([wall, plate]), view=EYE)
+        fitted = fitted_views(scene.object_coordinates)
+        words = words_in(scene, FRONT)
+        middle = words[FRONT.area.height // 2]
+        assert (middle != NIGHT).sum() == 4
+        element = round(fitted.position(FRONT, (-1, 0, 0))[0])
+        assert word in middle[element - 2 : element + 3]
+
+
+def test_a_stage_hides_nothing_and_is_drawn_as_its_outline_alone() -> None:
+    lid = grid(2, 2, (-5, -5, 4), (10, 0, 0), (0, 10, 0), "lid")
+    ring = grid(1, 1, (-2, -2, 3.9), (4, 0, 0), (0, 4, 0), "ring")
+    scene = scene_of(Mesh.joined([cube(), lid, ring]), view=EYE)
+    scene = scene.with_part("lid", stage=True).with_part("ring", stage=True)
+    fitted = fitted_views(scene.object_coordinates)
+    assert np.array_equal(words_in(scene, TOP), words_in(scene_of(cube(), view=EYE), TOP))
+    far = words_in(scene, TOP, fitted.zoomed(0.1))
+    assert set(np.unique(far).tolist()) == {NIGHT, LIGHT_GRAY, SLATE}
+    assert (far == SLATE).sum() == pytest.approx(4 * 10 * fitted.scale / 10, abs=8)
+    # If everything is stage, it is drawn as the object.
+    whole = scene.with_part(scene.parts[0].name, stage=True)
+    assert LIGHT_GRAY in words_in(whole, TOP)
+
+
+def test_lines_come_one_view_at_a_time_and_move_with_the_views_until_they_are_found_again() -> None:
+    scene = scene_of(cube(), view=EYE)
+    fitted, lines = fitted_views(scene.object_coordinates), ObjectLines()
+    for number in range(4):
+        page = lines.page(scene, fitted)
+        drawn = [(part_of(page, side.area) != NIGHT).any() for side in SIDES]
+        assert drawn == [place < number for place in range(3)]
+        assert lines.find_next(scene, fitted) == (number < 3)
+    assert lines.page(scene, fitted) is page
+    moved = fitted.centered((0.5 + 20 / fitted.scale, 0.5, 0.5 - 10 / fitted.scale))
+    before = part_of(page, FRONT.area)
+    now = part_of(lines.page(scene, moved), FRONT.area)
+    assert np.array_equal(now[:-10, :-20], before[10:, 20:])
+    assert np.array_equal(
+        now[:-10, :-20], part_of(found(scene, moved).page(scene, moved), FRONT.area)[:-10, :-20]
+    )
+    for ratio in (0.5, 2.0):
+        nearer = fitted.zoomed(ratio)
+        quick, final = (part_of(each.page(scene, nearer), TOP.area) for each in (lines, found(scene, nearer)))
+        if ratio < 1:
+            assert box(quick != NIGHT) == pytest.approx(box(final != NIGHT), abs=2)
+        else:
+            assert not (final != NIGHT).any()
 
 
 def test_a_scene_without_polygons_has_no_lines() -> None:
     scene = scene_of(Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ()), view=EYE)
-    lines, views = ObjectLines(), fitted_views(np.zeros((1, 3)))
-    while lines.leave_out_hidden(scene):
-        pass
     for side in SIDES:
-        assert not any(map(len, lines.of_side(scene, views, side)))
-    assert not any(map(len, lines.of_eye(scene, AREA)))
-
-
-def shown(edges: MeshEdges, mesh: Mesh, side: ViewSide) -> set[tuple[int, ...]]:
-    depths = depths_toward(mesh, side)
-    assert depths is not None
-    return {
-        tuple(sorted(pair)) for pair in without_hidden(edges.features, edges.coordinates, depths).tolist()
-    }
-
-
-@pytest.mark.parametrize("side", SIDES, ids=[side.name for side in SIDES])
-def test_the_far_side_of_a_cube_is_hidden_within_a_ring_around_it(side: ViewSide) -> None:
-    # A smaller cube behind a wall of the same shape is hidden; the wall is not.
-    toward = np.array(side.toward)
-    box = cube()
-    behind = Mesh((box.coordinates - 0.5) * 0.5 - 3 * toward, box.node_numbers, box.part_numbers, ("behind",))
-    before = Mesh(box.coordinates - 0.5, box.node_numbers, box.part_numbers, ("before",))
-    both = Mesh.joined([before, behind])
-    edges = mesh_edges(both)
-    found = shown(edges, both, side)
-    assert all(max(pair) < 8 for pair in found)
-    nearest = np.flatnonzero(before.coordinates @ toward > 0).tolist()
-    assert {tuple(sorted(pair)) for pair in found if set(pair) <= set(nearest)} == {
-        tuple(sorted(pair)) for pair in edges.features.tolist() if set(pair) <= set(nearest)
-    }
-
-
-def test_an_edge_outside_of_the_picture_counts_as_visible() -> None:
-    view = View((4.0, 5.0, 6.0), direction=(-1.0, -1.0, -1.0))
-    edges = mesh_edges(cube())
-    depths = visible_depths(visible_surfaces(cube(), view, (1,), 240, 320))
-    far = np.array([(-900.0, 0, 0), (-900.0, 0, 1), (9, 9, 9), (9, 9, 10)])
-    pairs = np.array([(0, 1), (2, 3)])
-    assert without_hidden(pairs, far, depths).tolist() == pairs.tolist()
-    assert len(without_hidden(edges.features, edges.coordinates, depths)) == 9
-
-
-def test_the_silhouette_of_a_fine_sphere_is_not_hidden() -> None:
-    mesh = sphere(120, 61)
-    edges = mesh_edges(mesh)
-    for side in SIDES:
-        outline = silhouette_toward(edges, side.toward)
-        depths = depths_toward(mesh, side)
-        assert depths is not None
-        assert len(without_hidden(outline, edges.coordinates, depths)) == len(outline)
-
-
-def test_a_stage_hides_nothing() -> None:
-    lid = grid(1, 1, (-5, -5, 4), (10, 0, 0), (0, 10, 0), "lid")
-    mesh = Mesh.joined([cube(), lid])
-    edges = mesh_edges(mesh, [0])
-    for part_numbers, count in ((None, 0), ([0], 4)):
-        depths = depths_toward(mesh, TOP, part_numbers)
-        assert depths is not None
-        # From straight above, the upper side covers all edges but its own.
-        assert len(without_hidden(edges.features, edges.coordinates, depths)) == count
-
-
-Place = tuple[float, ...]
-
-
-def lines(edges: MeshEdges) -> set[frozenset[Place]]:
-    """The features by the places of their ends."""
-    return {frozenset(map(tuple, pair)) for pair in edges.coordinates[edges.features].tolist()}
-
-
-def repeating_its_nodes(mesh: Mesh) -> Mesh:
-    """The mesh with nodes of its own for each polygon, as in a file without sharing."""
-    numbers = np.arange(mesh.node_numbers.size).reshape(-1, 4)
-    coordinates = mesh.coordinates[mesh.node_numbers.ravel()]
-    return Mesh(coordinates, numbers, mesh.part_numbers, mesh.part_names)
+        assert (words_in(scene, side, fitted_views(np.zeros((1, 3)))) == NIGHT).all()
 
 
 def folded(degrees: float) -> Mesh:
@@ -183,139 +182,44 @@ def folded(degrees: float) -> Mesh:
     return Mesh(np.array([*coordinates, *bent]), np.array([(0, 1, 2, 3), (1, 4, 5, 2)]))
 
 
-def test_the_diagonals_of_divided_sides_are_no_creases() -> None:
-    triangles = [three for a, b, c, d in CUBE_QUADS for three in ((a, b, c), (a, c, d))]
-    edges = mesh_edges(Mesh(np.array(CUBE_NODES), np.array(triangles)))
-    assert lines(edges) == lines(mesh_edges(cube()))
-    assert (len(edges.features), len(edges.smooth)) == (12, 6)
-
-
-@pytest.mark.parametrize(("fold", "creases"), [(0, 0), (29.9, 0), (30, 0), (30.1, 1), (90, 1), (179, 1)])
+@pytest.mark.parametrize(("fold", "creases"), [(0, 0), (29.9, 0), (30, 0), (30.1, 1), (90, 1)])
 def test_a_crease_is_an_angle_above_the_crease_angle(fold: float, creases: int) -> None:
     for sign in (1, -1):
-        assert len(mesh_edges(folded(sign * fold), crease_angle=30).features) == 6 + creases
+        mesh = folded(sign * fold)
+        assert crease_edges(mesh, np.arange(1)).shape == (2, creases)
+        numbers = mesh.node_numbers.copy()
+        numbers[1] = numbers[1, ::-1]
+        turned = Mesh(mesh.coordinates, numbers)
+        assert crease_edges(turned, np.arange(1)).shape == (2, creases)
 
 
-def test_polygons_of_different_parts_are_divided_by_a_line_and_of_one_part_by_none() -> None:
-    mesh = grid(2, 1, (0, 0, 0), (2, 0, 0), (0, 1, 0))
-    two = Mesh(mesh.coordinates, mesh.node_numbers, np.array([0, 1]), ("left", "right"))
-    assert len(mesh_edges(mesh).features) == 6
-    assert lines(mesh_edges(two)) - lines(mesh_edges(mesh)) == {frozenset({(1, 0, 0), (1, 1, 0)})}
+def test_the_diagonals_of_divided_sides_are_no_creases_and_a_stage_has_none() -> None:
+    triangles = [three for a, b, c, d in CUBE_QUADS for three in ((a, b, c), (a, c, d))]
+    mesh = Mesh(np.array(CUBE_NODES), np.array(triangles))
+    assert crease_edges(mesh, np.arange(1)).shape == (2, 12)
+    assert crease_edges(mesh, np.array([STAGE])).shape == (2, 0)
 
 
-def test_a_sheet_whose_polygons_are_there_for_each_face_has_its_border_alone() -> None:
-    sheet = grid(3, 2, (0, 0, 0), (3, 0, 0), (0, 2, 0))
-    numbers = np.concatenate([sheet.node_numbers, sheet.node_numbers[:, ::-1]])
-    assert lines(mesh_edges(Mesh(sheet.coordinates, numbers))) == lines(mesh_edges(sheet))
+@given(meshes(), views(), st.integers(4, 40), st.integers(4, 40))
+def test_the_depths_are_those_of_the_renderer(mesh: Mesh, view: View, lines: int, elements: int) -> None:
+    numbers = np.arange(len(mesh.part_names))
+    ours = depth_picture(mesh, view, lines, elements, numbers)
+    points = visible_surfaces(mesh, view, (1,) * len(mesh.part_names), lines, elements)
+    theirs = depth_picture_of_points(points, lines, elements, numbers)
+    assert np.array_equal(ours.parts, theirs.parts)
+    assert ours.depths == pytest.approx(theirs.depths, rel=1e-3)
+    words = line_words(ours, mesh, crease_edges(mesh, numbers))
+    assert (words[ours.parts == NO_PART] == NIGHT).all()
 
 
-def test_three_walls_that_meet_in_a_line_show_it() -> None:
-    flat = folded(0)
-    wall = [(0, 0, 1), (0, 1, 1)]
-    numbers = [*flat.node_numbers.tolist(), [1, 2, 7, 6]]
-    edges = mesh_edges(Mesh(np.concatenate([flat.coordinates, wall]), np.array(numbers)))
-    assert frozenset({(0, 0, 0), (0, 1, 0)}) in lines(edges)
-
-
-@given(meshes())
-def test_nodes_at_one_place_count_as_one(mesh: Mesh) -> None:
-    one, other = mesh_edges(mesh), mesh_edges(repeating_its_nodes(mesh))
-    assert lines(one) == lines(other)
-    assert len(one.smooth) == len(other.smooth)
-
-
-@given(meshes())
-def test_each_edge_of_polygons_with_an_area_is_a_feature_or_smooth(mesh: Mesh) -> None:
-    edges = mesh_edges(mesh)
-    has_area = (edges.normals != 0).any(axis=0)
-    expected = set()
-    for quad in mesh.node_numbers[has_area].tolist():
-        corners = [tuple(place) for place in mesh.coordinates[quad].tolist()]
-        expected |= {
-            frozenset(pair) for pair in itertools.pairwise([*corners, corners[0]]) if len(set(pair)) == 2
-        }
-    smooth = {frozenset(map(tuple, pair)) for pair in mesh.coordinates[edges.smooth].tolist()}
-    assert lines(edges) | smooth == expected
-    assert len(edges.features) + len(edges.smooth) == len(expected)
-
-
-def test_of_too_many_features_the_longest_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MOST_FEATURES", 4)
-    box = Mesh(cube().coordinates * (1, 2, 3), cube().node_numbers)
-    edges = mesh_edges(box)
-    assert np.abs(np.diff(box.coordinates[edges.features], axis=1)).reshape(4, 3).tolist() == [[0, 0, 3]] * 4
-
-
-def test_edges_are_where_the_renderer_has_their_pixels() -> None:
-    view = View((4.0, 5.0, 6.0), target=(0.5, 0.5, 0.5), angle=20.0)
-    edges = mesh_edges(cube())
-    projected = projection(cube(), view, AREA.height, AREA.width)
+@pytest.mark.parametrize("side", [TOP, FRONT, SIDE])
+def test_a_far_eye_has_every_point_where_the_view_has_it(side: ViewSide) -> None:
+    points = np.random.default_rng(1).uniform(-1, 1, (100, 3))
+    views = fitted_views(points)
+    view = view_of_side(side, views)
+    picture = depth_picture(cube(), view, side.area.height, side.area.width, np.arange(1))
+    x, y, depth = view.axes @ (points - np.array(view.eye)).T
     # The renderer has the centers of pixels at halves.
-    places = np.stack([projected.x - 0.5 + AREA.left, projected.y - 0.5 + AREA.top], axis=1)
-    found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
-    assert found == pytest.approx(places[edges.features].reshape(-1, 4))
-
-
-@pytest.mark.parametrize(("width", "half"), [(200, 50), (134, 50), (80, 30), (40, 15)])
-def test_the_height_of_a_wide_area_is_the_field_of_view(width: int, half: float) -> None:
-    view = View((0.0, -1.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=90.0)
-    edges = mesh_edges(wall(half=0.98))
-    found = perspective_strokes(edges.coordinates, edges.features, view, Area(0, 0, width - 1, 99))
-    # At 45 degrees a unit is half the height of a picture of 4:3, unless the area is cropped.
-    assert (found[:, 1::2].min(), found[:, 1::2].max()) == pytest.approx(
-        (49.5 - 0.98 * half, 49.5 + 0.98 * half)
-    )
-    assert len(found) == 4
-
-
-def test_what_is_behind_the_eye_is_left_out_and_what_passes_it_is_cut_off() -> None:
-    view = View((0.0, 0.0, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=90.0)
-    points = np.array([(0.5, 1, 0), (0.5, -1, 0), (0, -1, 0), (0, -2, 0)], np.float64)
-    middle = AREA.middle[0]
-    found = perspective_strokes(points, np.array([(0, 1), (1, 0), (2, 3)]), view, AREA)
-    one = [middle + AREA.height / 4, AREA.middle[1]]
-    end = [AREA.right, AREA.middle[1]]
-    assert found.tolist() == [[*one, *end], [*end, *one]]
-
-
-@given(meshes(), views())
-def test_all_strokes_are_within_the_area(mesh: Mesh, view: View) -> None:
-    edges = mesh_edges(mesh)
-    found = perspective_strokes(edges.coordinates, edges.features, view, AREA)
-    assert (found >= [AREA.left, AREA.top] * 2).all()
-    assert (found <= [AREA.right, AREA.bottom] * 2).all()
-
-
-def turned_at_random(mesh: Mesh, seed: int) -> Mesh:
-    """The mesh with some of its quads running the other way."""
-    numbers = mesh.node_numbers.copy()
-    turned = np.random.default_rng(seed).integers(0, 2, len(numbers)).astype(bool)
-    turned &= numbers[:, 2] != numbers[:, 3]
-    numbers[turned] = numbers[turned][:, ::-1]
-    return Mesh(mesh.coordinates, numbers)
-
-
-@given(directions(), st.integers(0, 1 << 32))
-def test_a_silhouette_is_closed_whichever_way_the_polygons_run(direction: Vector, seed: int) -> None:
-    toward = np.array(direction) / np.linalg.norm(direction)
-    edges = mesh_edges(turned_at_random(sphere(24, 13), seed))
-    found = silhouette_toward(edges, toward.tolist())
-    assert len(found) >= 3
-    assert (np.bincount(found.ravel()) % 2 == 0).all()
-    plain = silhouette_toward(mesh_edges(sphere(24, 13)), toward.tolist())
-    if np.abs(toward @ edges.normals).min() > 1e-6:
-        assert sorted(map(sorted, found.tolist())) == sorted(map(sorted, plain.tolist()))
-
-
-@given(directions())
-def test_a_distant_eye_sees_the_silhouette_of_its_direction(direction: Vector) -> None:
-    toward = np.array(direction) / np.linalg.norm(direction)
-    edges = mesh_edges(sphere(24, 13))
-    assume(np.abs(toward @ edges.normals).min() > 1e-6)
-    expected = silhouette_toward(edges, toward.tolist())
-    assert silhouette_from(edges, (1e9 * toward).tolist()).tolist() == expected.tolist()
-    # The horizon as seen from the distance 2 is at half of the radius, and from within there is none.
-    ball = mesh_edges(sphere(48, 25))
-    found = silhouette_from(ball, (2 * toward).tolist())
-    assert ball.coordinates[found].reshape(-1, 3) @ toward == pytest.approx(0.5, abs=0.15)
-    assert len(silhouette_from(ball, (0.2 * toward).tolist())) == 0
+    elements = x / depth * picture.focal + side.area.width / 2 - 0.5 + side.area.left
+    lines = y / depth * picture.focal + side.area.height / 2 - 0.5 + side.area.top
+    assert np.stack([elements, lines], axis=1) == pytest.approx(views.positions(side, points), abs=0.05)

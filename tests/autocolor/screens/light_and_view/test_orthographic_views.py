@@ -15,6 +15,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     SIDES,
     TOP,
     OrthographicViews,
+    PointMark,
     ViewSide,
     area_of_picture,
     fitted_views,
@@ -56,19 +57,24 @@ def test_each_view_shows_two_axes_as_on_an_engineering_drawing() -> None:
 def test_the_mark_of_a_point_is_at_its_position_or_where_its_arrow_comes_into_the_area(
     views: OrthographicViews, side: ViewSide, point: Vector, end: Vector | None
 ) -> None:
-    at, mark = views.position(side, point), views.mark_position(side, point, end)
+    at, mark = views.position(side, point), views.mark(side, point, end)
     if side.area.has(*at):
-        assert mark == at
+        assert mark == PointMark(at, at)
         return
     area = side.area.inset(EDGE)
-    beyond = [mark[0] - area.left, area.right - mark[0], mark[1] - area.top, area.bottom - mark[1]]
+    element, line = mark.place
+    beyond = [element - area.left, area.right - element, line - area.top, area.bottom - line]
     assert min(beyond) == pytest.approx(0, abs=1e-6)
+    assert mark.is_outside
+    assert mark.at == at
     to = area.middle if end is None else views.position(side, end)
     if area.has(*to):
-        arrow, way = np.subtract(at, to), np.subtract(mark, to)
+        arrow, way = np.subtract(at, to), np.subtract(mark.place, to)
         assert arrow @ way >= 0
-        # Both lead the same way.
+        # Both lead the same way, and the point is so many times as far.
         assert abs(arrow[0] * way[1] - arrow[1] * way[0]) <= 1e-6 * (np.hypot(*arrow) + 1)
+        if np.hypot(*way) > 1e-3 and mark.ratio < 1e5:
+            assert np.hypot(*arrow) == pytest.approx(mark.ratio * np.hypot(*way), rel=1e-3)
 
 
 @given(st.data())
