@@ -29,7 +29,7 @@ from os import fspath
 from os.path import abspath
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, NoReturn, Unpack
+from typing import TYPE_CHECKING, Literal, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
@@ -268,6 +268,21 @@ class Studio(Suggesting):
         InputError if a scalar colors surfaces.
         """
         self.edit(self.scene.replace(words=NORMALS if on else LEVELS))
+
+    def stage(
+        self,
+        stage: Literal["none", "floor", "bowl"],
+        backdrop: str | Sequence[str | Sequence[int]] | None = None,
+    ) -> None:
+        """Stand the object on a "floor" or in a "bowl", or on "none"; everything is recomputed.
+
+        A stage has its own surface, named "stage", which can be recolored. `backdrop` has two colors where
+        nothing is visible, from the top of the picture to its bottom; if only they change, entries are sent,
+        but no words. Without them a stage brings grays.
+
+            studio.stage("bowl", ["#223", "#889"])
+        """
+        self.edit(self.scene.replace(stage=stage, backdrop=backdrop))
 
     def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
         """Hold the intensity ranges of the current picture, so that less light looks darker from now on.

@@ -60,7 +60,11 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
     camera = camera_light(row, points)
     number = None if surface is None else place_named(scene.surfaces, surface) + 1
     most, found = 0.0, None
-    for each in (each for each in points.slices if number in (None, each.surface_number)):
+    # Without a name, a highlight is on the object, not on the stage that is made around it.
+    apart = scene.stage_number
+    for each in points.slices:
+        if each.surface_number != number if number else each.surface_number == apart:
+            continue
         for chunk in chunks(each.stop, PIXELS_AT_ONCE, each.start):
             if scene.words == NORMALS:
                 cosines = _cosines_from_afar(scene, row, points, chunk)

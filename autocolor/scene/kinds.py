@@ -404,6 +404,20 @@ class ColorsKind(Kind[tuple[Color, ...]]):
         return {name: [in_digits(color) for color in value]}
 
 
+@dataclass(frozen=True)
+class BackdropKind(ColorsKind):
+    """The two colors of a backdrop. A backdrop that comes or goes changes words, other colors entries."""
+
+    def rule(self) -> str:
+        return "must be two colors"
+
+    def advice(self, value: object) -> str:
+        return '; write them as in ["#223", "#889"]'
+
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        return Tier.LEVELS if (one is None) != (other is None) else super().cost(one, other, own)
+
+
 def _between_commas(text: str) -> list[str]:
     """The parts of a text between its commas, except those in parentheses, without spaces and quotes.
 

@@ -40,7 +40,7 @@ from autocolor.scene.columns import (
     with_values,
 )
 from autocolor.scene.curves import CURVES, CurvePoints
-from autocolor.scene.defaults import object_bounds, object_coordinates
+from autocolor.scene.defaults import object_bounds, object_coordinates, stage_top
 from autocolor.scene.following import (
     Frame,
     followers_of,
@@ -51,7 +51,7 @@ from autocolor.scene.following import (
     vector_columns,
 )
 from autocolor.scene.in_1983 import changes_to_1983
-from autocolor.scene.kinds import CurveKind, Instance, color, number, one_of, text
+from autocolor.scene.kinds import BackdropKind, CurveKind, Instance, color, number, one_of, text
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
@@ -65,6 +65,15 @@ from autocolor.scene.row_kinds import (
     table_row,
 )
 from autocolor.scene.scalar import COMPUTED, Scalar
+from autocolor.scene.stage import (
+    BACKDROP,
+    NONE,
+    STAGES,
+    floor_of,
+    stage_part,
+    stage_surface,
+    with_stage,
+)
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
 
@@ -168,6 +177,19 @@ class Scene(Row):
     background: Color = color(
         default=(0, 0, 0), tier=Tier.ENTRIES, help="The color where nothing is visible."
     )
+    stage: str = one_of(
+        STAGES,
+        default=NONE,
+        tier=Tier.FRAME,
+        help="What stands below and behind the object: nothing, a floor, or a bowl that rises around it.",
+    )
+    backdrop: tuple[Color, ...] | None = column_of(
+        BackdropKind(2),
+        default=None,
+        tier=Tier.ENTRIES,
+        help="Two colors where nothing is visible, from the top of the picture to its bottom; if absent, a"
+        " stage brings grays, and without a stage there is the background.",
+    )
     front: str | None = one_of(
         FRONTS,
         default=None,
@@ -189,6 +211,13 @@ class Scene(Row):
         tier=Tier.NOTHING,
         help="The name of the scene, from its folder or file.",
     )
+
+    def complete(self) -> None:
+        """Add the surface of the stage, if the scene has a stage and no surface of that name."""
+        if self.stage != NONE and self.parts is not REFUSED and self.surfaces is not REFUSED:
+            name = stage_part(self.parts).surface
+            if name not in [row.name for row in self.surfaces]:
+                vars(self)["surfaces"] = TableRows((*self.surfaces, stage_surface(name)))
 
     def rules(self) -> Iterator[Problem]:
         """The parts match the mesh, all references are valid, and there are few enough surfaces and views.
@@ -457,6 +486,50 @@ class Scene(Row):
             return replaced(self, {table: rows})
         return with_values(self, {table: rows})
 
+    @property
+    def backdrop_colors(self) -> tuple[Color, ...]:
+        """The colors of the backdrop from the top of the picture; none if there is only the background."""
+        return self.backdrop or (BACKDROP if self.stage != NONE else ())
+
+    @property
+    def stage_surface(self) -> str:
+        """The name of the surface of the stage that is made; empty if `stage` is "none"."""
+        return stage_part(self.parts).surface if self.stage != NONE else ""
+
+    @property
+    def stage_number(self) -> int:
+        """The number of the surface of the stage that is made, counted from 1; 0 if there is none."""
+        names = [row.name for row in self.surfaces]
+        return 1 + names.index(self.stage_surface) if self.stage != NONE else 0
+
+    @property
+    def stage_top(self) -> float:
+        """The largest z coordinate of the stage, or of the floor that is made; minus infinity without any."""
+        top = stage_top(self.mesh, self.parts)
+        return top if self.stage == NONE else max(top, floor_of(self.mesh, self.parts))
+
+    @property
+    def staged_parts(self) -> tuple[Part, ...]:
+        """The parts, and the part of the stage that is made, if any."""
+        return (*self.parts, stage_part(self.parts)) if self.stage != NONE else self.parts
+
+    @property
+    def staged(self) -> Scene:
+        """The scene as it is rendered: the stage is a part of the mesh, and no other stage is made.
+
+        This is the scene itself if `stage` is "none", or if the eye is not above the floor.
+        """
+        mesh = None
+        if self.stage != NONE:
+            mesh = with_stage(self.mesh, self.parts, self.stage, self.view.eye)
+        if mesh is None:
+            return self
+        # Cached properties depend on the mesh and the parts.
+        copy, values = object.__new__(Scene), vars(self)
+        vars(copy).update({name: values[name] for name in fields_of(Scene)})
+        vars(copy).update(mesh=mesh, parts=TableRows(self.staged_parts), stage=NONE)
+        return copy
+
     @cached_property
     def surface_number_of_part(self) -> tuple[int, ...]:
         """The surface number, counted from 1, of each part."""
@@ -508,7 +581,8 @@ def unseen_recoloring(old: Scene, new: Scene, surface: str) -> str:
     """Why no picture shows the recoloring of a surface by `with_paint`; empty if one can show it."""
     if new is old:
         return f"surface {shown(surface)} has these colors already; the recoloring changes nothing"
-    if all(new.parts[part].surface != surface for part in new.mesh.parts_in_use):
+    in_use = {new.parts[part].surface for part in new.mesh.parts_in_use}
+    if surface not in (*in_use, new.stage_surface):
         return f"surface {shown(surface)} has no polygons; no picture shows its colors"
     return ""
 

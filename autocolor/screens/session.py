@@ -198,10 +198,11 @@ class Session:
     def world(self) -> World:
         """The bounds of the object, from which bars get their range, and the names of the tables."""
         scene = self.scene
-        if self._world is None or self._world[0] is not scene.mesh or self._world[1] != scene.parts:
-            low, high = (tuple(corner.tolist()) for corner in scene.mesh.bounds)
+        mesh = scene.staged.mesh
+        if self._world is None or self._world[0] is not mesh or self._world[1] != scene.parts:
+            low, high = (tuple(corner.tolist()) for corner in mesh.bounds)
             world = World(*scene.object_bounds, self._names, (low, high))
-            self._world = scene.mesh, scene.parts, world
+            self._world = mesh, scene.parts, world
         return self._world[2]
 
     def _names_in(self, table: str) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legen
 from autocolor.scene.defaults import TRIMMED
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import AUTO
+from autocolor.scene.stage import STAGES
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import ALL_HELD, PictureEdits
@@ -28,7 +29,7 @@ from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Pair, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Entry, Pair, Switch, Widget
 
 
 class OverPicture(Screen):
@@ -84,7 +85,8 @@ class OverPicture(Screen):
         pointed = self._pointed(gesture.element, gesture.line)
         if pointed is None:
             on_legend = self._is_on_legend(gesture.element, gesture.line)
-            session.tell("the legend: drag it" if on_legend else "the background")
+            empty = "the backdrop" if session.scene.backdrop_colors else "the background"
+            session.tell("the legend: drag it" if on_legend else empty)
             return
         session.choose_surface(pointed.surface)
         session.part_name = pointed.part
@@ -236,6 +238,34 @@ def exposure_row(edits: PictureEdits) -> Choice:
         present=next(iter(words), ALL_HELD if all(held) else MIXED),
         choose=edits.choose_exposure,
     )
+
+
+def stage_rows(edits: PictureEdits) -> list[Widget]:
+    """The row of the stage, and where there is a backdrop, the rows of its two colors."""
+    session = edits.session
+    scene, colors = session.scene, session.scene.backdrop_colors
+    present: Any = scene.stage
+
+    def choose(stage: Any) -> None:
+        session.studio.stage(stage, scene.backdrop)
+
+    def take(number: int, color: str) -> None:
+        session.studio.stage(present, [*colors[:number], color, *colors[number + 1 :]])
+
+    stage = Choice(
+        "stage",
+        "Stand the object on a floor, or in a bowl; the dark pool below it is painted, not computed.",
+        names=STAGES,
+        present=present,
+        choose=choose,
+    )
+    help = "The color where nothing is visible, at the top or the bottom of the picture."
+    labels = ("backdrop top", "and bottom")
+    entries = [
+        Entry(labels[number], help, value=in_digits(color), take=partial(take, number))
+        for number, color in enumerate(colors)
+    ]
+    return [stage, *entries]
 
 
 def camera_rows(edits: PictureEdits) -> list[Widget]:

@@ -12,7 +12,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
-from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, stage_top
+from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
@@ -194,7 +194,7 @@ class PictureEdits:
     def stage_top(self) -> float:
         """The largest z coordinate of the stage; minus infinity without a stage."""
         scene = self.session.scene
-        return self._top.of(lambda: stage_top(scene.mesh, scene.parts), scene.mesh, scene.parts)
+        return self._top.of(lambda: scene.stage_top, scene.mesh, scene.parts, scene.stage)
 
     def turn(self, right: float, up: float) -> None:
         """Move the eye around the object, in degrees."""
@@ -306,6 +306,8 @@ class PictureEdits:
     def _fill(self, parts: Sequence[int]) -> None:
         """Move the eye so that some parts, by their numbers, fill the picture."""
         scene = self.session.scene
+        if not parts:
+            raise UsageError("the view fills with the object, not with its stage; click a part of the object")
         self.look(framed(scene.view, scene.mesh.coordinates_of_parts(parts)))
 
     def tilt(self, degrees: float) -> None:

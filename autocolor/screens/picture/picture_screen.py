@@ -9,7 +9,7 @@ from typing import Final
 from autocolor.errors import UsageError
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.over_picture import OverPicture, camera_rows, surface_row
+from autocolor.screens.picture.over_picture import OverPicture, camera_rows, stage_rows, surface_row
 from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, SENT, Session
@@ -62,6 +62,7 @@ class PictureScreen(OverPicture):
                 session,
                 "The surface that you edit; a click in the picture chooses, too.",
             ),
+            *stage_rows(edits),
             Section("light switches"),
             *self._light_rows(),
             Section("turn & move"),
