@@ -274,11 +274,9 @@ class Studio(Suggesting):
         stage: Literal["none", "floor", "bowl"],
         backdrop: str | Sequence[str | Sequence[int]] | None = None,
     ) -> None:
-        """Stand the object on a "floor" or in a "bowl", or on "none"; everything is recomputed.
+        """Stand the object on a floor or in a bowl, before a `backdrop` of two colors, or of grays.
 
-        A stage has its own surface, named "stage", which can be recolored. `backdrop` has two colors where
-        nothing is visible, from the top of the picture to its bottom; if only they change, entries are sent,
-        but no words. Without them a stage brings grays.
+        If only the colors change, entries are sent, but no words. The surface "stage" can be recolored.
 
             studio.stage("bowl", ["#223", "#889"])
         """

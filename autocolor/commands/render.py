@@ -26,7 +26,9 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", "stage", "view", "normals", "paper", "size", "smooth", "hold_exposure", required=False)
+@scene_options(
+    "settings", "stage", "view", "normals", "paper", "size", "smooth", "hold_exposure", required=False
+)
 @option(
     "-o --output", "PNG", "PNG file to write. Default, without any other output: SCENE.png, or coupe.png."
 )

@@ -245,7 +245,7 @@ def edited(report: SceneReport, source: SceneSource) -> Scene:
         with as_usage("--normals: "):
             scene = scene.replace(words="normals")
     if source.stage is not None:
-        scene = with_settings(scene, [f"stage={source.stage}"])
+        scene = with_settings(scene, (f"stage={source.stage}",))
     if source.view is not None:
         scene = scene.with_taken_view(source.view)
     if source.hold_exposure:

@@ -12,6 +12,7 @@ pixel of an image is the mean of a square of so many pixels a side.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -149,18 +150,10 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
     if scalar is not None and np.isinf(scalar).any():
         raise InputError("a scalar must have a finite number or NaN at each pixel, not infinity")
     names, of_part = tuple(surface.name for surface in scene.surfaces), seen.mesh.part_names
-    return Picture.from_rasters(
-        relative,
-        surfaces,
-        names,
-        float(scale),
-        scalar,
-        next(iter(limits), None),
-        parts,
-        of_part,
-        smooth,
-        scene.stage_number,
+    picture = Picture.from_rasters(
+        relative, surfaces, names, float(scale), scalar, next(iter(limits), None), parts, of_part, smooth
     )
+    return dataclasses.replace(picture, apart=scene.stage_surface)
 
 
 def plain_scene(scene: Scene) -> dict[str, Any]:

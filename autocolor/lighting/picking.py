@@ -58,12 +58,13 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
     scene, points = sight.scene, sight.points
     row = scene.lights_in_world[light]
     camera = camera_light(row, points)
-    number = None if surface is None else place_named(scene.surfaces, surface) + 1
+    if surface is not None:
+        place_named(scene.surfaces, surface)
     most, found = 0.0, None
     # Without a name, a highlight is on the object, not on the stage that is made around it.
-    apart = scene.stage_number
     for each in points.slices:
-        if each.surface_number != number if number else each.surface_number == apart:
+        name = scene.surfaces[each.surface_number - 1].name
+        if name != surface if surface is not None else name == scene.stage_surface:
             continue
         for chunk in chunks(each.stop, PIXELS_AT_ONCE, each.start):
             if scene.words == NORMALS:

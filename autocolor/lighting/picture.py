@@ -67,8 +67,8 @@ class Picture(Immutable):
 
     If `smooth` is more than 1, each pixel of an image is the mean of a square of `smooth` pixels a side.
 
-    `apart` is the number of a surface that no range of the whole picture includes, such as that of a stage
-    that is made around the object; 0 for none.
+    `apart` is the name of a surface that the range of the whole picture leaves out: that of a stage that is
+    made around the object.
 
     `counts`, (n,), are how many pixels each intensity stands for; None if each stands for one.
     """
@@ -86,7 +86,7 @@ class Picture(Immutable):
     visible_parts: VisibleParts | None = field(default=None, repr=False)
     normals: Singles | None = field(default=None, repr=False)
     smooth: int = 1
-    apart: int = 0
+    apart: str = ""
     counts: Indices | None = field(default=None, repr=False)
 
     @classmethod
@@ -101,7 +101,6 @@ class Picture(Immutable):
         part_number: PartNumbers | None = None,
         parts: tuple[str, ...] = (),
         smooth: int = 1,
-        apart: int = 0,
     ) -> Picture:
         """A picture of relative intensities and surface numbers, both (lines, elements), without planes.
 
@@ -129,7 +128,6 @@ class Picture(Immutable):
             if part_number is None
             else VisibleParts.of_points(parts, part_number.ravel()[pixels]),
             smooth=smooth,
-            apart=apart,
         )
 
     @property
@@ -177,15 +175,13 @@ class Picture(Immutable):
 
     @cached_property
     def relative_ranges(self) -> Mapping[int, IntensityRange]:
-        """Minimum and maximum of `relative` by surface number; number 0 is the whole picture.
-
-        The surface that is `apart` does not count for the whole picture, unless nothing else is visible.
-        """
+        """Minimum and maximum of `relative` by surface number; number 0 is all but the surface `apart`."""
         ranges = {}
         for surface in self.slices:
             values = self.relative[surface.pixels]
             ranges[surface.surface_number] = IntensityRange(float(values.min()), float(values.max()))
-        counted = [each for number, each in ranges.items() if number != self.apart] or [*ranges.values()]
+        counted = [ranges[number] for number in ranges if self.surfaces[number - 1] != self.apart]
+        counted = counted or [*ranges.values()]
         least = min((each.minimum for each in counted), default=0.0)
         most = max((each.maximum for each in counted), default=0.0)
         return {0: IntensityRange(least, most), **ranges}

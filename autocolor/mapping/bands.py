@@ -161,7 +161,8 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
         for row in rows
         if row.name in colored
     }
-    shades = _shades(scalar, rows, bands, bool(scene.backdrop_colors)) if bands else 1
+    words = SURFACE_WORDS - BACKDROP.levels * scene.has_backdrop
+    shades = _shades(scalar, rows, bands, words) if bands else 1
     return {name: each._replace(shades=shades) for name, each in bands.items()}
 
 
@@ -183,9 +184,7 @@ def own_limits(picture: Picture) -> tuple[float, float]:
     return widened(*(picture.scalar_limits or UNIT))
 
 
-def _shades(
-    scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands], has_backdrop: bool
-) -> int:
+def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands], words: int) -> int:
     """The shades of each band: the scalar's number if it has any, else as many as the words suffice for.
 
     Assumed: the levels that a colored surface asks for are meant for its paint, and its bands take the levels
@@ -194,7 +193,7 @@ def _shades(
     words.
     """
     others = [surface.levels for surface in surfaces if surface.name not in bands]
-    left = SURFACE_WORDS - (BACKDROP.levels if has_backdrop else 0) - sum(filter(None, others))
+    left = words - sum(filter(None, others))
     room, useful = (left - others.count(None) * fewest for fewest in (FEWEST_LEVELS, USEFUL_LEVELS))
     if room < 0:
         # The other surfaces ask for too much; `level_ranges` refuses that.

@@ -39,7 +39,7 @@ from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_points import SurfaceSlice
 from autocolor.visibility.watkins import numbers_by_line
 
-MAPPING: Final = ("scaling", "mapping", "exposure", "dither")
+MAPPING: Final = ("scaling", "mapping", "exposure", "dither", "has_backdrop")
 """The fields of a scene that its words depend on, besides the picture and the ranges; see `words_of`."""
 
 
@@ -157,7 +157,6 @@ class LevelImage(DisplayImage):
             and before.ranges is ranges
             and before.bands == bands
             and all(getattr(before.scene, name) == getattr(scene, name) for name in MAPPING)
-            and bool(before.scene.backdrop_colors) == bool(scene.backdrop_colors)
         ):
             image = cls(scene, picture, ranges, before.words, block, bands)
             # Words and lowest levels depend on the same ranges of intensity.
@@ -275,7 +274,7 @@ def image_ranges(
         scene.division,
         levels,
         stage=scene.stage_surface,
-        has_backdrop=bool(scene.backdrop_colors),
+        has_backdrop=scene.has_backdrop,
     )
     return before.ranges if before is not None and before.ranges == ranges else ranges
 
@@ -287,21 +286,17 @@ def _claims(scene: Scene) -> tuple[object, ...]:
     return (
         scene.division,
         scene.words,
-        bool(scene.backdrop_colors),
+        scene.has_backdrop,
         *((each.name, each.levels) for each in scene.surfaces if each.name in used),
     )
 
 
 def with_backdrop(words: Words, scene: Scene) -> Words:
     """The words, (lines, elements), with those of the backdrop where nothing is visible, if there is one."""
-    if not scene.backdrop_colors:
+    if not scene.has_backdrop:
         return words
-    return read_only(np.where(words == BACKGROUND, _backdrop_words(len(words))[:, None], words))
-
-
-def _backdrop_words(lines: int) -> Words:
-    """The word of the backdrop on each line, (lines,) uint16."""
-    return (BACKDROP.first + np.arange(lines) * BACKDROP.levels // lines).astype(np.uint16)
+    down = BACKDROP.first + np.arange(len(words)) * BACKDROP.levels // len(words)
+    return read_only(np.where(words == BACKGROUND, down[:, None].astype(np.uint16), words))
 
 
 def in_blocks(words: Words, block: int) -> Words:

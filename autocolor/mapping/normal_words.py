@@ -93,7 +93,7 @@ class NormalImage(DisplayImage):
             isinstance(before, NormalImage)
             and before.picture.normals is picture.normals
             and before.ranges is ranges
-            and bool(before.scene.backdrop_colors) == bool(scene.backdrop_colors)
+            and before.scene.has_backdrop == scene.has_backdrop
         ):
             words, normals = before.words, before.normals
         else:

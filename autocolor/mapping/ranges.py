@@ -88,14 +88,13 @@ def level_ranges(
     """
     used = [surface for surface in surfaces if surface.name in covered]
     levels_of = {surface.name: fixed.get(surface.name, surface.levels) for surface in used}
-    room = BACKDROP.first - BACKGROUND - 1 if has_backdrop else SURFACE_WORDS
+    room = SURFACE_WORDS - BACKDROP.levels * has_backdrop
     asked = sum(levels for levels in levels_of.values() if levels is not None)
     sharing = [name for name, levels in levels_of.items() if levels is None]
     if stage in sharing:
         sharing.remove(stage)
-        left = room - asked - USEFUL_LEVELS * len(sharing)
-        levels_of[stage] = min(max(left, FEWEST_LEVELS), STAGE_LEVELS)
-        asked += levels_of[stage] or 0
+        left = min(max(room - asked - USEFUL_LEVELS * len(sharing), FEWEST_LEVELS), STAGE_LEVELS)
+        levels_of[stage], asked = left, asked + left
     if asked > room or (sharing and (room - asked) // len(sharing) < FEWEST_LEVELS):
         largest = max(levels_of, key=lambda name: levels_of[name] or 0)
         raise InputError(

@@ -379,7 +379,7 @@ class ColorsKind(Kind[tuple[Color, ...]]):
     most: int
 
     def rule(self) -> str:
-        return f"must be a list of 2 to {self.most} colors"
+        return f"must be a list of 2{f' to {self.most}' if self.most > 2 else ''} colors"
 
     def accepted(self, value: Any) -> tuple[Color, ...]:
         require(not isinstance(value, UNORDERED))
@@ -388,7 +388,7 @@ class ColorsKind(Kind[tuple[Color, ...]]):
         return colors
 
     def advice(self, value: object) -> str:
-        return '; write them as in ["#200", "#f60", "#fff"]'
+        return '; write them as in ["#200", "#fff"]'
 
     def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         given = value
@@ -402,20 +402,6 @@ class ColorsKind(Kind[tuple[Color, ...]]):
 
     def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: [in_digits(color) for color in value]}
-
-
-@dataclass(frozen=True)
-class BackdropKind(ColorsKind):
-    """The two colors of a backdrop. A backdrop that comes or goes changes words, other colors entries."""
-
-    def rule(self) -> str:
-        return "must be two colors"
-
-    def advice(self, value: object) -> str:
-        return '; write them as in ["#223", "#889"]'
-
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        return Tier.LEVELS if (one is None) != (other is None) else super().cost(one, other, own)
 
 
 def _between_commas(text: str) -> list[str]:

@@ -40,7 +40,7 @@ from autocolor.scene.columns import (
     with_values,
 )
 from autocolor.scene.curves import CURVES, CurvePoints
-from autocolor.scene.defaults import object_bounds, object_coordinates, stage_top
+from autocolor.scene.defaults import object_bounds, object_coordinates
 from autocolor.scene.following import (
     Frame,
     followers_of,
@@ -51,7 +51,7 @@ from autocolor.scene.following import (
     vector_columns,
 )
 from autocolor.scene.in_1983 import changes_to_1983
-from autocolor.scene.kinds import BackdropKind, CurveKind, Instance, color, number, one_of, text
+from autocolor.scene.kinds import ColorsKind, CurveKind, Instance, color, number, one_of, text
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
@@ -69,9 +69,8 @@ from autocolor.scene.stage import (
     BACKDROP,
     NONE,
     STAGES,
-    floor_of,
+    SURFACE,
     stage_part,
-    stage_surface,
     with_stage,
 )
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
@@ -181,14 +180,14 @@ class Scene(Row):
         STAGES,
         default=NONE,
         tier=Tier.FRAME,
-        help="What stands below and behind the object: nothing, a floor, or a bowl that rises around it.",
+        help="Whether the object stands on a floor, or in a bowl; the dark pool below it is painted, not"
+        " computed.",
     )
     backdrop: tuple[Color, ...] | None = column_of(
-        BackdropKind(2),
+        ColorsKind(2),
         default=None,
-        tier=Tier.ENTRIES,
-        help="Two colors where nothing is visible, from the top of the picture to its bottom; if absent, a"
-        " stage brings grays, and without a stage there is the background.",
+        tier=Tier.LEVELS,
+        help="Two colors behind everything, from the top of the picture down; if absent, a stage has grays.",
     )
     front: str | None = one_of(
         FRONTS,
@@ -217,7 +216,7 @@ class Scene(Row):
         if self.stage != NONE and self.parts is not REFUSED and self.surfaces is not REFUSED:
             name = stage_part(self.parts).surface
             if name not in [row.name for row in self.surfaces]:
-                vars(self)["surfaces"] = TableRows((*self.surfaces, stage_surface(name)))
+                vars(self)["surfaces"] = TableRows((*self.surfaces, SURFACE.replace(name=name)))
 
     def rules(self) -> Iterator[Problem]:
         """The parts match the mesh, all references are valid, and there are few enough surfaces and views.
@@ -492,42 +491,28 @@ class Scene(Row):
         return self.backdrop or (BACKDROP if self.stage != NONE else ())
 
     @property
+    def has_backdrop(self) -> bool:
+        """Whether there is a backdrop where nothing is visible."""
+        return bool(self.backdrop_colors)
+
+    @property
     def stage_surface(self) -> str:
         """The name of the surface of the stage that is made; empty if `stage` is "none"."""
         return stage_part(self.parts).surface if self.stage != NONE else ""
 
     @property
-    def stage_number(self) -> int:
-        """The number of the surface of the stage that is made, counted from 1; 0 if there is none."""
-        names = [row.name for row in self.surfaces]
-        return 1 + names.index(self.stage_surface) if self.stage != NONE else 0
-
-    @property
-    def stage_top(self) -> float:
-        """The largest z coordinate of the stage, or of the floor that is made; minus infinity without any."""
-        top = stage_top(self.mesh, self.parts)
-        return top if self.stage == NONE else max(top, floor_of(self.mesh, self.parts))
-
-    @property
-    def staged_parts(self) -> tuple[Part, ...]:
-        """The parts, and the part of the stage that is made, if any."""
-        return (*self.parts, stage_part(self.parts)) if self.stage != NONE else self.parts
-
-    @property
     def staged(self) -> Scene:
-        """The scene as it is rendered: the stage is a part of the mesh, and no other stage is made.
+        """The scene as it is rendered: a stage that is made is a part of the mesh.
 
-        This is the scene itself if `stage` is "none", or if the eye is not above the floor.
+        It is the scene itself if there is none to make, or if the eye is not above the floor.
         """
-        mesh = None
-        if self.stage != NONE:
-            mesh = with_stage(self.mesh, self.parts, self.stage, self.view.eye)
+        mesh = with_stage(self.mesh, self.parts, self.stage, self.view.eye) if self.stage != NONE else None
         if mesh is None:
             return self
-        # Cached properties depend on the mesh and the parts.
-        copy, values = object.__new__(Scene), vars(self)
-        vars(copy).update({name: values[name] for name in fields_of(Scene)})
-        vars(copy).update(mesh=mesh, parts=TableRows(self.staged_parts), stage=NONE)
+        # Cached properties depend on the mesh and the parts, so they are not copied.
+        parts = TableRows((*self.parts, stage_part(self.parts)))
+        copy, values = object.__new__(Scene), {name: vars(self)[name] for name in fields_of(Scene)}
+        vars(copy).update({**values, "mesh": mesh, "parts": parts, "stage": NONE})
         return copy
 
     @cached_property

@@ -207,7 +207,9 @@ class Viewer:
         self._update()
         return taken
 
-    def _press(self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool) -> bool:
+    def _press(
+        self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool
+    ) -> bool:
         """Offer a key to the typed text, the menu, the screen and the key bindings, in this order."""
         if not control and not alt and self._type(name, typed, repeated):
             return True

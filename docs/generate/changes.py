@@ -64,7 +64,6 @@ ACCEPTED = {
     "ColorKind": "str | Sequence[int]",
     "EndColor": "str | Sequence[int]",
     "ColorsKind": "str | Sequence[str | Sequence[int]]",
-    "BackdropKind": "str | Sequence[str | Sequence[int]]",
     "ScaleKind": "str | Sequence[str | Sequence[int]]",
     "Instance": "object",
     "OneRowOf": "str | Row",

@@ -20,7 +20,6 @@ from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legen
 from autocolor.scene.defaults import TRIMMED
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import AUTO
-from autocolor.scene.stage import STAGES
 from autocolor.scene.surfaces import Paint
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import ALL_HELD, PictureEdits
@@ -29,7 +28,7 @@ from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Entry, Pair, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Pair, Switch, Widget
 
 
 class OverPicture(Screen):
@@ -241,31 +240,13 @@ def exposure_row(edits: PictureEdits) -> Choice:
 
 
 def stage_rows(edits: PictureEdits) -> list[Widget]:
-    """The row of the stage, and where there is a backdrop, the rows of its two colors."""
+    """The rows of the stage of the object and of the backdrop."""
     session = edits.session
-    scene, colors = session.scene, session.scene.backdrop_colors
-    present: Any = scene.stage
 
-    def choose(stage: Any) -> None:
-        session.studio.stage(stage, scene.backdrop)
+    def put(changes: Mapping[str, Any]) -> None:
+        session.edit(session.scene.replace(**changes))
 
-    def take(number: int, color: str) -> None:
-        session.studio.stage(present, [*colors[:number], color, *colors[number + 1 :]])
-
-    stage = Choice(
-        "stage",
-        "Stand the object on a floor, or in a bowl; the dark pool below it is painted, not computed.",
-        names=STAGES,
-        present=present,
-        choose=choose,
-    )
-    help = "The color where nothing is visible, at the top or the bottom of the picture."
-    labels = ("backdrop top", "and bottom")
-    entries = [
-        Entry(labels[number], help, value=in_digits(color), take=partial(take, number))
-        for number, color in enumerate(colors)
-    ]
-    return [stage, *entries]
+    return rows_of(session.scene, put, session.world, columns=("stage", "backdrop"))
 
 
 def camera_rows(edits: PictureEdits) -> list[Widget]:

@@ -12,9 +12,10 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
-from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed
+from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, stage_top
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
+from autocolor.scene.stage import NONE, shape_of
 from autocolor.scene.view import View
 from autocolor.screens.screen import Cached
 from autocolor.screens.session import Session
@@ -194,7 +195,9 @@ class PictureEdits:
     def stage_top(self) -> float:
         """The largest z coordinate of the stage; minus infinity without a stage."""
         scene = self.session.scene
-        return self._top.of(lambda: scene.stage_top, scene.mesh, scene.parts, scene.stage)
+        if scene.stage != NONE:
+            return max(stage_top(scene.mesh, scene.parts), shape_of(scene.mesh, scene.parts).floor)
+        return self._top.of(lambda: stage_top(scene.mesh, scene.parts), scene.mesh, scene.parts)
 
     def turn(self, right: float, up: float) -> None:
         """Move the eye around the object, in degrees."""
