@@ -130,7 +130,7 @@ def shape_of(mesh: Mesh, parts: tuple[Part, ...]) -> Shape:
     return Shape((float(x), float(y), float(z)), radius, floor, pool, outline)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=2)
 @underflowing
 def _with_rings(mesh: Mesh, parts: tuple[Part, ...], stage: str, reach: float) -> Mesh:
     """The mesh with the rings of a stage, whose radius is `reach`, as a further part."""
