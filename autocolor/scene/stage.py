@@ -57,7 +57,7 @@ POOL: Final = 0.4
 DARKEST: Final = 130.0
 """The angle in degrees by which the normals of the pool lean below the object."""
 
-REACH: Final = {FLOOR: (9.0, 2.0), BOWL: (6.5, 1.75)}
+REACH: Final = 6.5, 1.75
 """The radius of the stage: at least so many radii of the object, and so many distances of the eye.
 
 The eye is then above the flat part of a bowl, and below its rim, which is as high as the radius.
@@ -97,7 +97,7 @@ def with_stage(mesh: Mesh, parts: tuple[Part, ...], stage: str, eye: Vector) -> 
     shape = shape_of(mesh, parts)
     if eye[2] <= shape.floor:
         return None
-    least, distances = REACH[stage]
+    least, distances = REACH
     reach = min(max(least, distances * math.dist(eye, shape.center) / shape.radius), 1e9)
     # Rounding keeps the mesh while the eye turns around the object.
     return _with_rings(mesh, parts, stage, round(reach + 0.05, 1))
@@ -106,7 +106,8 @@ def with_stage(mesh: Mesh, parts: tuple[Part, ...], stage: str, eye: Vector) -> 
 class Shape(NamedTuple):
     """The center and the radius of the sphere around an object, and the height of the floor below it.
 
-    `pool` is how far the pool reaches beyond the outline. `outline`, (AROUND, 2), are x and y of the outermost low nodes in the directions of `AWAY`.
+    `pool` is how far the pool reaches beyond the outline. `outline`, (AROUND, 2), has x and y of the
+    outermost low node in each of the directions of `AWAY`.
     """
 
     center: Vector

@@ -21,7 +21,6 @@ from autocolor.scene.kinds import (
     AngleCurveKind,
     Boolean,
     ColorKind,
-    ColorsKind,
     Number,
     OneOf,
     Text,
@@ -149,8 +148,6 @@ def _rows_of_field(menu: _Menu, name: str, column: Column, value: Any) -> Iterat
         yield Entry(shown, help, value=str(value), take=put)
     elif isinstance(kind, ColorKind):
         yield Entry(shown, help, value=in_digits(value), take=put)
-    elif isinstance(kind, ColorsKind) and kind.most == 2:
-        yield Entry(shown, help, value=", ".join(map(in_digits, value or ())), take=put)
     elif isinstance(kind, VectorKind) and value is not None:
         yield from _vector_rows(menu, shown, name, column, value)
     elif isinstance(kind, AngleCurveKind):

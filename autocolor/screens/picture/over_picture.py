@@ -28,7 +28,7 @@ from autocolor.screens.session import Session
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Pair, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Entry, Pair, Switch, Widget
 
 
 class OverPicture(Screen):
@@ -240,13 +240,24 @@ def exposure_row(edits: PictureEdits) -> Choice:
 
 
 def stage_rows(edits: PictureEdits) -> list[Widget]:
-    """The rows of the stage of the object and of the backdrop."""
-    session = edits.session
+    """The row of the stage of the object, and where there is a backdrop, the rows of its two colors."""
+    session, colors = edits.session, edits.session.scene.backdrop_colors
 
     def put(changes: Mapping[str, Any]) -> None:
         session.edit(session.scene.replace(**changes))
 
-    return rows_of(session.scene, put, session.world, columns=("stage", "backdrop"))
+    def entry(label: str, number: int) -> Entry:
+        help = "The color behind everything at the top or the bottom of the picture, as a name or #rrggbb."
+        others = colors[:number], colors[number + 1 :]
+        return Entry(
+            label,
+            help,
+            value=in_digits(colors[number]),
+            take=lambda color: put({"backdrop": [*others[0], color, *others[1]]}),
+        )
+
+    row = rows_of(session.scene, put, session.world, columns=("stage",))
+    return [*row, entry("backdrop", 0), entry("  bottom", 1)] if colors else row
 
 
 def camera_rows(edits: PictureEdits) -> list[Widget]:

@@ -40,7 +40,7 @@ def made_nodes(scene: Scene) -> np.ndarray:
 @given(height=numbers(-9, 9), size=numbers(0.1, 9))
 def test_the_floor_is_a_hair_below_the_lowest_point(stage: str, height: float, size: float) -> None:
     mesh = cube(size)
-    moved = Mesh(mesh.coordinates + [0, 0, height], mesh.node_numbers, mesh.part_numbers, ("cube",))
+    moved = Mesh(mesh.coordinates + np.array([0, 0, height]), mesh.node_numbers, mesh.part_numbers, ("cube",))
     floor = made_nodes(scene_of(moved, stage=stage))[:, 2].min()
     assert height - 0.01 * size < floor < height
 
@@ -96,7 +96,7 @@ def test_the_pool_below_the_object_is_dark_and_the_floor_around_it_is_lit() -> N
     picture = render(scene, (257, 193))
     line = picture.intensity[96][picture.surface_number[96] == 2]
     right = line[len(line) // 2 :]
-    assert right[0] < 0.1 * right.max()
+    assert right[0] < 0.25 * right.max()
     assert (np.diff(right[: right.argmax()]) >= 0).all()
     assert right[-1] > 0.7
 
