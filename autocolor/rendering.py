@@ -2,7 +2,7 @@
 
 | changed | recomputed |
 |---|---|
-| mesh, view, interpolation, the surface of a part, two_sided | everything |
+| mesh, stage, view, interpolation, the surface of a part, two_sided | everything |
 | a light's position, aim, controls, links to parts | the two planes of the light, the sum |
 | the aim of a light that others follow | the two planes of the light and of its followers, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
@@ -32,7 +32,6 @@ from autocolor.scalars.computed import scalar_values
 from autocolor.scene.columns import Tier, cost, with_values
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import NORMALS, Scene, check_scene, costs_at_least
-from autocolor.scene.stage import NONE as NO_STAGE
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
@@ -215,8 +214,8 @@ def sees_the_same(old: Scene, new: Scene) -> bool:
     """Whether two scenes have the same visible points, including the surface number of each."""
     is_other = costs_at_least(old, new, Tier.FRAME)
     one, other = old.staged, new.staged
-    has_same_stage = old.stage == NO_STAGE or one.mesh is other.mesh
-    return not is_other and has_same_stage and one.surface_number_of_part == other.surface_number_of_part
+    is_other = is_other or one.mesh is not other.mesh
+    return not is_other and one.surface_number_of_part == other.surface_number_of_part
 
 
 @cache

@@ -6,13 +6,13 @@ computes what differs, and sends it.
 
 | the edit changes | the studio sends |
 |---|---|
-| mesh, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
+| mesh, stage, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
 | mapping, scaling, exposure, dither, numbers of levels | all words, the entries that differ |
 | the name of the scalar, what it is computed with | all words |
 | limits, bands and shades of the scalar, the surfaces with its colors | all words, the entries that differ |
 | object color, light color, blend, light percentage | the entries of one range, no words |
 | color scale, the colors below, above and of missing values | the entries of the colored surfaces, no words |
-| contrast, background | the entries that differ, no words |
+| contrast, background, the colors of the backdrop | the entries that differ, no words |
 | the legend switched on or off | all words |
 
 While words stand for normals (`normals`), an edit of a light, ambient, D, S, a reflection model, mapping,

@@ -268,13 +268,9 @@ def image_ranges(
     sizes = {seen.parts[number].surface: 0 for number in seen.mesh.parts_in_use}
     for surface in picture.slices:
         sizes[picture.surfaces[surface.surface_number - 1]] = size_of(surface)
+    stage, has_backdrop = scene.stage_surface, scene.has_backdrop
     ranges = level_ranges(
-        scene.surfaces,
-        sizes,
-        scene.division,
-        levels,
-        stage=scene.stage_surface,
-        has_backdrop=scene.has_backdrop,
+        scene.surfaces, sizes, scene.division, levels, stage=stage, has_backdrop=has_backdrop
     )
     return before.ranges if before is not None and before.ranges == ranges else ranges
 

@@ -65,14 +65,7 @@ from autocolor.scene.row_kinds import (
     table_row,
 )
 from autocolor.scene.scalar import COMPUTED, Scalar
-from autocolor.scene.stage import (
-    BACKDROP,
-    NONE,
-    STAGES,
-    SURFACE,
-    stage_part,
-    with_stage,
-)
+from autocolor.scene.stage import BACKDROP, NONE, STAGES, SURFACE, stage_part, with_stage
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import autocolor
-from autocolor import Mesh, Scene, Studio, Surface, View, image, read_picture, render, scene_of
+from autocolor import Light, Mesh, Scene, Studio, Surface, View, image, read_picture, render, scene_of
 from autocolor.images import display_image
 from autocolor.mapping.ranges import BACKDROP, SURFACE_WORDS
 from autocolor.scene.columns import from_plain, to_plain
@@ -24,10 +25,10 @@ STAGES = pytest.mark.parametrize("stage", ["floor", "bowl"])
 COLORS = ((10, 20, 30), (200, 190, 180))
 
 
-def ball(**fields: object) -> Scene:
+def ball(**fields: Any) -> Scene:
     """A ball of radius 2 around (3, 0, 5)."""
     coordinates = sphere().coordinates * 2 + [3, 0, 5]
-    return scene_of(Mesh(coordinates, sphere().node_numbers, sphere().part_numbers, ("ball",)), **fields)  # type: ignore[arg-type]
+    return scene_of(Mesh(coordinates, sphere().node_numbers, sphere().part_numbers, ("ball",)), **fields)
 
 
 def made_nodes(scene: Scene) -> np.ndarray:
@@ -38,7 +39,7 @@ def made_nodes(scene: Scene) -> np.ndarray:
 
 @STAGES
 @given(height=numbers(-9, 9), size=numbers(0.1, 9))
-def test_the_floor_is_a_hair_below_the_lowest_point(stage: str, height: float, size: float) -> None:
+def test_the_floor_is_a_hair_below_the_lowest_point(stage: Any, height: float, size: float) -> None:
     mesh = cube(size)
     moved = Mesh(mesh.coordinates + np.array([0, 0, height]), mesh.node_numbers, mesh.part_numbers, ("cube",))
     floor = made_nodes(scene_of(moved, stage=stage))[:, 2].min()
@@ -54,7 +55,7 @@ def test_without_a_stage_a_scene_is_rendered_as_it_is() -> None:
 
 
 @given(azimuth=numbers(0, 360), elevation=numbers(0, 90), distance=numbers(0.01, 500), stage=st.just("bowl"))
-def test_a_bowl_keeps_the_eye_inside(azimuth: float, elevation: float, distance: float, stage: str) -> None:
+def test_a_bowl_keeps_the_eye_inside(azimuth: float, elevation: float, distance: float, stage: Any) -> None:
     a, e = math.radians(azimuth), math.radians(elevation)
     eye = np.array([math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e)]) * distance + [3, 0, 5]
     view = View(tuple(eye.tolist()), direction=(-1, 0.5, -0.25))
@@ -90,7 +91,7 @@ def test_a_bowl_is_round_and_bends_smoothly_into_a_wall_that_faces_the_object() 
 
 def test_the_pool_below_the_object_is_dark_and_the_floor_around_it_is_lit() -> None:
     """With a light straight above, light falls as cos(I) of the normals that lean."""
-    light = {"name": "sun", "position": (0.5, 0.5, 500), "intensity": 1.0}
+    light = Light("sun", (0.5, 0.5, 500))
     view = View((0.5, 0.5, 9), target=(0.5, 0.5, 0))
     scene = scene_of(cube(), stage="floor", view=view, lights=[light], ambient=0.0)
     picture = render(scene, (257, 193))
@@ -110,7 +111,7 @@ def test_an_eye_below_the_floor_sees_the_object() -> None:
 
 
 @STAGES
-def test_an_underside_in_the_plane_of_the_floor_is_not_torn(stage: str) -> None:
+def test_an_underside_in_the_plane_of_the_floor_is_not_torn(stage: Any) -> None:
     sheet = scene_of(grid(1, 1, (0, 0, 0), (1, 0, 0), (0, 1, 0)), surfaces=[Surface("sheet")])
     view = View((0.5, -3, 0.6), target=(0.5, 0.5, 0))
     sheet = sheet.replace(view=view)
@@ -122,7 +123,7 @@ def test_an_underside_in_the_plane_of_the_floor_is_not_torn(stage: str) -> None:
 
 
 @STAGES
-def test_a_stage_leaves_the_names_of_the_object_alone(stage: str) -> None:
+def test_a_stage_leaves_the_names_of_the_object_alone(stage: Any) -> None:
     mesh = Mesh.joined([grid(1, 1, (0, 0, 0), (1, 0, 0), (0, 0, 1), name) for name in ("stage", "stage 2")])
     scene = scene_of(mesh, surfaces="parts").replace(stage=stage)
     assert [row.name for row in scene.surfaces] == ["stage", "stage 2", "stage 3"]
@@ -141,7 +142,7 @@ def test_a_surface_that_is_given_paints_the_stage_and_no_part() -> None:
 
 
 @STAGES
-def test_a_stage_is_not_the_object(stage: str) -> None:
+def test_a_stage_is_not_the_object(stage: Any) -> None:
     scene = car()
     staged = scene.replace(stage=stage)
     assert staged.object_bounds == scene.object_bounds
@@ -151,7 +152,7 @@ def test_a_stage_is_not_the_object(stage: str) -> None:
 
 
 @STAGES
-def test_a_stage_comes_through_files(stage: str, tmp_path: Path) -> None:
+def test_a_stage_comes_through_files(stage: Any, tmp_path: Path) -> None:
     scene = car().replace(stage=stage, backdrop=COLORS).with_paint("stage", object_color="#808890")
     for name in ("scene/scene.toml", "scene.sqlite"):
         autocolor.write_scene(tmp_path / name, scene)
@@ -169,7 +170,7 @@ def test_a_stage_comes_through_files(stage: str, tmp_path: Path) -> None:
 
 
 @given(st.integers(1, 200), st.sampled_from(["covered", "equal"]))
-def test_a_stage_and_its_backdrop_take_at_most_160_words(count: int, division: str) -> None:
+def test_a_stage_and_its_backdrop_take_at_most_160_words(count: int, division: Any) -> None:
     quads = [grid(1, 1, (n, 0, 0), (0.9, 0, 0), (0, 0, 1), f"part {n}") for n in range(count)]
     scene = scene_of(Mesh.joined(quads), surfaces="parts", stage="bowl", division=division)
     ranges = display_image(scene, render(scene, (32, 24))).ranges
@@ -180,7 +181,7 @@ def test_a_stage_and_its_backdrop_take_at_most_160_words(count: int, division: s
 
 
 @pytest.mark.parametrize("words", ["levels", "normals"])
-def test_the_backdrop_is_by_line_and_without_polygons(words: str) -> None:
+def test_the_backdrop_is_by_line_and_without_polygons(words: Any) -> None:
     scene = ball(backdrop=COLORS, words=words)
     shown = display_image(scene, render(scene, (64, 48)))
     is_empty = shown.picture.surface_number == 0
@@ -194,13 +195,13 @@ def test_the_backdrop_is_by_line_and_without_polygons(words: str) -> None:
 
 @STAGES
 @pytest.mark.parametrize("words", ["levels", "normals"])
-def test_the_colors_of_the_backdrop_are_entries_alone(stage: str, words: str) -> None:
+def test_the_colors_of_the_backdrop_are_entries_alone(stage: Any, words: Any) -> None:
     scene = car().without_scalar().replace(words=words)
     studio, display = opened(scene)
-    studio.stage(stage)  # type: ignore[arg-type]
+    studio.stage(stage)
     written = display.frame_buffer.written
-    studio.stage(stage, COLORS)  # type: ignore[arg-type]
-    studio.stage(stage, ["red", "#0000ff"])  # type: ignore[arg-type]
+    studio.stage(stage, COLORS)
+    studio.stage(stage, ["red", "#0000ff"])
     assert display.entries[BACKDROP.first].tolist() == [255, 0, 0]
     assert held(display) == fresh(studio.scene)
     studio.recolor("stage", object_color="#224466")
@@ -212,7 +213,7 @@ def test_the_colors_of_the_backdrop_are_entries_alone(stage: str, words: str) ->
 
 
 @STAGES
-def test_a_stage_catches_the_lights(stage: str) -> None:
+def test_a_stage_catches_the_lights(stage: Any) -> None:
     studio, _ = opened(car().replace(stage=stage, scalar=None))
     name = studio.scene.lights[0].name
     before = studio.picture.intensity[studio.picture.surface_number == len(studio.picture.surfaces)]
@@ -228,7 +229,7 @@ def test_a_stage_catches_the_lights(stage: str) -> None:
 
 @STAGES
 @pytest.mark.parametrize("exposure", ["auto", "99.5 %"])
-def test_a_stage_takes_no_part_in_the_range_of_the_object(stage: str, exposure: str) -> None:
+def test_a_stage_takes_no_part_in_the_range_of_the_object(stage: Any, exposure: Any) -> None:
     scene = ball(exposure=exposure)
     bare, staged = render(scene, (160, 120)), render(scene.replace(stage=stage), (160, 120))
     assert staged.ranges.whole == pytest.approx(bare.ranges.whole, rel=1e-5)
@@ -249,7 +250,7 @@ def test_a_highlight_is_on_the_object_unless_the_stage_is_named() -> None:
 
 
 @STAGES
-def test_pixels_of_stage_and_backdrop_are_explained(stage: str) -> None:
+def test_pixels_of_stage_and_backdrop_are_explained(stage: Any) -> None:
     studio, _ = opened(ball(stage=stage, view=View((3, -30, 4), target=(3, 0, 7))))
     shown = studio.display_image
     line, element = np.argwhere(shown.picture.surface_number == 2)[-1].tolist()
@@ -265,7 +266,7 @@ def test_pixels_of_stage_and_backdrop_are_explained(stage: str) -> None:
 
 
 @STAGES
-def test_a_scalar_colors_no_stage_and_its_bands_have_the_words_first(stage: str) -> None:
+def test_a_scalar_colors_no_stage_and_its_bands_have_the_words_first(stage: Any) -> None:
     scene = ball(stage=stage).with_scalar(name="z", bands=100, shades=8)
     shown = display_image(scene, render(scene, (32, 24)))
     assert shown.bands.keys() == {"surface"}
@@ -274,7 +275,7 @@ def test_a_scalar_colors_no_stage_and_its_bands_have_the_words_first(stage: str)
 
 
 @given(turn=numbers(0, 360), stage=st.sampled_from(["floor", "bowl"]))
-def test_an_eye_that_turns_around_the_object_moves_no_wall(turn: float, stage: str) -> None:
+def test_an_eye_that_turns_around_the_object_moves_no_wall(turn: float, stage: Any) -> None:
     scene = ball(stage=stage)
     x, y = scene.view.eye[0] - 3, scene.view.eye[1]
     cosine, sine = math.cos(math.radians(turn)), math.sin(math.radians(turn))
