@@ -2,7 +2,7 @@
 
 | changed | recomputed |
 |---|---|
-| mesh, view, interpolation, the surface of a part, two_sided | everything |
+| mesh, stage, view, interpolation, the surface of a part, two_sided | everything |
 | a light's position, aim, controls, links to parts | the two planes of the light, the sum |
 | the aim of a light that others follow | the two planes of the light and of its followers, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
@@ -126,6 +126,7 @@ def rendering(
     check_scene(scene)
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
+    seen = scene.staged
     if before is not None and sees_the_same(before.scene, scene):
         if not costs_at_least(before.scene, scene, Tier.MIX):
             return Rendering(scene, before.points, _with_normals(before.picture, scene, before.points))
@@ -141,9 +142,9 @@ def rendering(
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
         with timed(LOG, f"visible surfaces, {elements} x {lines}"):
             points = ALGORITHMS[algorithm](
-                scene.mesh,
-                scene.view,
-                scene.surface_number_of_part,
+                seen.mesh,
+                seen.view,
+                seen.surface_number_of_part,
                 lines,
                 elements,
                 one_sided,
@@ -177,8 +178,9 @@ def _with_scalar(picture: Picture, scene: Scene, points: VisiblePoints, before: 
             values, limits = before.picture.scalar_values, before.picture.scalar_limits
         else:
             with timed(LOG, "scalar values"):
-                of_object = scene.object_coordinates if any(_stage(scene)) else None
-                values, limits = scalar_values(scene.mesh, scene.scalar, points, of_object)
+                seen = scene.staged
+                of_object = seen.object_coordinates if any(_stage(seen)) else None
+                values, limits = scalar_values(seen.mesh, scene.scalar, points, of_object)
     if values is picture.scalar_values:
         return picture
     return dataclasses.replace(picture, scalar_values=values, scalar_limits=limits)
@@ -211,7 +213,9 @@ def _is_lit_the_same(old: Scene, new: Scene) -> bool:
 def sees_the_same(old: Scene, new: Scene) -> bool:
     """Whether two scenes have the same visible points, including the surface number of each."""
     is_other = costs_at_least(old, new, Tier.FRAME)
-    return not is_other and old.surface_number_of_part == new.surface_number_of_part
+    one, other = old.staged, new.staged
+    is_other = is_other or one.mesh is not other.mesh
+    return not is_other and one.surface_number_of_part == other.surface_number_of_part
 
 
 @cache

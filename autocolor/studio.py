@@ -6,13 +6,13 @@ computes what differs, and sends it.
 
 | the edit changes | the studio sends |
 |---|---|
-| mesh, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
+| mesh, stage, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
 | mapping, scaling, exposure, dither, numbers of levels | all words, the entries that differ |
 | the name of the scalar, what it is computed with | all words |
 | limits, bands and shades of the scalar, the surfaces with its colors | all words, the entries that differ |
 | object color, light color, blend, light percentage | the entries of one range, no words |
 | color scale, the colors below, above and of missing values | the entries of the colored surfaces, no words |
-| contrast, background | the entries that differ, no words |
+| contrast, background, the colors of the backdrop | the entries that differ, no words |
 | the legend switched on or off | all words |
 
 While words stand for normals (`normals`), an edit of a light, ambient, D, S, a reflection model, mapping,
@@ -29,7 +29,7 @@ from os import fspath
 from os.path import abspath
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, NoReturn, Unpack
+from typing import TYPE_CHECKING, Literal, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.budget import allowing, validated_limit
@@ -269,6 +269,19 @@ class Studio(Suggesting):
         InputError if a scalar colors surfaces.
         """
         self.edit(self.scene.replace(words=NORMALS if on else LEVELS))
+
+    def stage(
+        self,
+        stage: Literal["none", "floor", "bowl"],
+        backdrop: str | Sequence[str | Sequence[int]] | None = None,
+    ) -> None:
+        """Stand the object on a floor or in a bowl, before a `backdrop` of two colors, or of grays.
+
+        If only the colors change, entries are sent, but no words. The surface "stage" can be recolored.
+
+            studio.stage("bowl", ["#223", "#889"])
+        """
+        self.edit(self.scene.replace(stage=stage, backdrop=backdrop))
 
     def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
         """Hold the intensity ranges of the current picture, so that less light looks darker from now on.

@@ -374,6 +374,8 @@ def scene_columns() -> dict[str, st.SearchStrategy[Any]]:
         "division": st.sampled_from(["covered", "equal"]),
         "interpolation": st.sampled_from(INTERPOLATIONS),
         "background": colors(),
+        "stage": st.just("none"),
+        "backdrop": st.none(),
         "front": st.sampled_from([None, "x", "-x", "y", "-y"]),
     }
 

@@ -30,7 +30,7 @@ FRAMES: Final = 48
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", "normals", "size", "smooth", "hold_exposure")
+@scene_options("settings", "stage", "normals", "size", "smooth", "hold_exposure")
 @option(
     "--vary varies",
     "KEY=VALUES",

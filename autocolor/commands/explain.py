@@ -19,7 +19,7 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", "size")
+@scene_options("settings", "stage", "size")
 @click.argument("line", type=int)
 @click.argument("element", type=int)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with all lights.")

@@ -23,7 +23,7 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", "size", "smooth")
+@scene_options("settings", "stage", "size", "smooth")
 @flag("--lights", "Let the page change the lights: their strengths, and which are on.")
 @vary_option
 @table_option

@@ -15,7 +15,7 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor render
   autocolor render scenes/coupe -o coupe.png --save coupe.npz
-  autocolor render car.obj --up y
+  autocolor render car.obj --up y --stage bowl
   autocolor render scenes/coupe --light key -o key.png
   autocolor render scenes/coupe --light key --hold-exposure -o key-alone.png
   autocolor render scenes/coupe --view hood -o hood.png
@@ -26,7 +26,9 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", "view", "normals", "paper", "size", "smooth", "hold_exposure", required=False)
+@scene_options(
+    "settings", "stage", "view", "normals", "paper", "size", "smooth", "hold_exposure", required=False
+)
 @option(
     "-o --output", "PNG", "PNG file to write. Default, without any other output: SCENE.png, or coupe.png."
 )

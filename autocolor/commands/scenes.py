@@ -38,6 +38,7 @@ class SceneSource(NamedTuple):
     settings: tuple[str, ...] = ()
     normals: bool = False
     paper: bool = False
+    stage: str | None = None
     view: str | None = None
     size: tuple[int, int] = (640, 480)
     smooth: int | None = None
@@ -125,6 +126,11 @@ PICTURES: Final[dict[str, Decorator]] = {
         "--paper",
         "Show the scene as in 1983: normals linear in the picture, Phong's model, levels from minimum to"
         " maximum, no smooth edges.",
+    ),
+    "stage": click.option(
+        "--stage",
+        type=click.Choice(["none", "floor", "bowl"]),
+        help="Stand the object on a floor, or in a bowl, before a backdrop.",
     ),
     "view": option("--view", "NAME", "Render a named view of the scene.", str, shell_complete=complete_views),
     "size": option(
@@ -238,6 +244,8 @@ def edited(report: SceneReport, source: SceneSource) -> Scene:
     if source.normals:
         with as_usage("--normals: "):
             scene = scene.replace(words="normals")
+    if source.stage is not None:
+        scene = with_settings(scene, (f"stage={source.stage}",))
     if source.view is not None:
         scene = scene.with_taken_view(source.view)
     if source.hold_exposure:
@@ -262,10 +270,9 @@ def start_of(source: SceneSource) -> tuple[Scene | SavedPicture, int]:
     if not is_picture(Path(source.path)):
         scene, report = read_edited(source)
         return scene, ended(report, source)
-    if source.normals:
-        raise UsageError(
-            "--normals is for a scene, not for a picture file, which has no normals; leave it out"
-        )
+    for name in ("normals", "stage"):
+        if name in source.given:
+            raise UsageError(f"--{name} is for a scene, not for a picture file; leave it out")
     saved = read_picture(source.path)
     scene = with_held_exposure(saved.scene, saved.picture) if source.hold_exposure else saved.scene
     return saved._replace(scene=recolored(scene, None, {}, source.settings)), 0

@@ -46,7 +46,7 @@ timeout_option = option(
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", required=False)
+@scene_options("settings", "stage", required=False)
 @option(
     "--to address",
     "tcp://HOST:PORT",

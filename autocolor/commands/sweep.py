@@ -55,7 +55,7 @@ jobs_option = option("--jobs", "N", "Make pictures in so many processes.", click
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", "size", "smooth", "hold_exposure")
+@scene_options("settings", "stage", "size", "smooth", "hold_exposure")
 @vary_option
 @table_option
 @option(

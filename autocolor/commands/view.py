@@ -30,7 +30,7 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options("settings", "normals", "paper", required=False)
+@scene_options("settings", "stage", "normals", "paper", required=False)
 @recover_option
 @flag("--sessions", "List the sessions that were not closed, and exit.")
 @option("--forget", "SESSION", "Remove a session that was not closed, and exit.", str)

@@ -50,7 +50,7 @@ class PointExplained:
 
 def point_explained(scene: Scene, seen: Seen) -> PointExplained:
     """The visible point at a pixel, with the rows of its tables, counted from 1."""
-    mesh = scene.mesh
+    mesh = scene.staged.mesh
     corners = [
         Corner(
             node + 1,

@@ -49,10 +49,11 @@ def rows_of_text(explanation: Explanation, most: int = PAGE) -> list[TextRow]:
     title = TextRow("pixel", f"line {explanation.line}, element {explanation.element} of {explanation.scene}")
     point, level = explanation.point, explanation.level
     if point is None:
+        owner = "backdrop" if explanation.word else "background"
         return [
             _fitted(title),
-            TextRow("seen", "nothing: the background"),
-            TextRow("word", f"{explanation.word}, the background's"),
+            TextRow("seen", f"nothing: the {owner}"),
+            TextRow("word", f"{explanation.word}, the {owner}'s"),
             TextRow("color", color_text(explanation.color)),
         ]
     before = [title, *_point_rows(point)]

@@ -12,6 +12,7 @@ pixel of an image is the mean of a square of so many pixels a side.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -126,9 +127,10 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
             f"smooth must be a whole number that divides its lines and elements, {shape}, not {shown(smooth)}"
         )
     # Parts without polygons, and no part, are of no surface.
-    surface_of = np.zeros(1 + len(scene.parts), np.uint8)
-    for part in scene.mesh.parts_in_use:
-        surface_of[1 + part] = scene.surface_number_of_part[part]
+    seen = scene.staged
+    surface_of = np.zeros(1 + len(seen.parts), np.uint8)
+    for part in seen.mesh.parts_in_use:
+        surface_of[1 + part] = seen.surface_number_of_part[part]
     wrong = (parts < 0) | (parts >= len(surface_of))
     wrong |= surface_of.take(parts, mode="clip") != surfaces
     if wrong.any():
@@ -147,10 +149,11 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
         )
     if scalar is not None and np.isinf(scalar).any():
         raise InputError("a scalar must have a finite number or NaN at each pixel, not infinity")
-    names, of_part = tuple(surface.name for surface in scene.surfaces), scene.mesh.part_names
-    return Picture.from_rasters(
+    names, of_part = tuple(surface.name for surface in scene.surfaces), seen.mesh.part_names
+    picture = Picture.from_rasters(
         relative, surfaces, names, float(scale), scalar, next(iter(limits), None), parts, of_part, smooth
     )
+    return dataclasses.replace(picture, apart=scene.stage_surface)
 
 
 def plain_scene(scene: Scene) -> dict[str, Any]:

@@ -49,7 +49,7 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         for surface in points.slices
     }
     lights = {light.name: light for light in scene.lights_in_world}
-    weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient, scene.parts)
+    weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient, scene.staged.parts)
     changed = _changed_surfaces(models, previous)
     reusable = _reusable_planes(lights, previous)
     most = int(SHARE * allowed_memory()) // (BYTES_OF_LIGHT * max(1, len(points.pixels)))
@@ -98,6 +98,7 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         weights.scale,
         light_planes,
         visible_parts=points.parts,
+        apart=scene.stage_surface,
     )
 
 

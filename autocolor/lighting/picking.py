@@ -58,9 +58,12 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
     scene, points = sight.scene, sight.points
     row = scene.lights_in_world[light]
     camera = camera_light(row, points)
-    number = None if surface is None else place_named(scene.surfaces, surface) + 1
+    # Without a name, a highlight is on the object, not on the stage that is made around it.
+    names = {row.name for row in scene.surfaces} - {scene.stage_surface}
+    if surface is not None:
+        names = {scene.surfaces[place_named(scene.surfaces, surface)].name}
     most, found = 0.0, None
-    for each in (each for each in points.slices if number in (None, each.surface_number)):
+    for each in (each for each in points.slices if scene.surfaces[each.surface_number - 1].name in names):
         for chunk in chunks(each.stop, PIXELS_AT_ONCE, each.start):
             if scene.words == NORMALS:
                 cosines = _cosines_from_afar(scene, row, points, chunk)

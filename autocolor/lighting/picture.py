@@ -67,6 +67,9 @@ class Picture(Immutable):
 
     If `smooth` is more than 1, each pixel of an image is the mean of a square of `smooth` pixels a side.
 
+    `apart` is the name of a surface that the range of the whole picture leaves out: that of a stage that is
+    made around the object.
+
     `counts`, (n,), are how many pixels each intensity stands for; None if each stands for one.
     """
 
@@ -83,6 +86,7 @@ class Picture(Immutable):
     visible_parts: VisibleParts | None = field(default=None, repr=False)
     normals: Singles | None = field(default=None, repr=False)
     smooth: int = 1
+    apart: str = ""
     counts: Indices | None = field(default=None, repr=False)
 
     @classmethod
@@ -171,13 +175,15 @@ class Picture(Immutable):
 
     @cached_property
     def relative_ranges(self) -> Mapping[int, IntensityRange]:
-        """Minimum and maximum of `relative` by surface number; number 0 is the whole picture."""
+        """Minimum and maximum of `relative` by surface number; number 0 is all but the surface `apart`."""
         ranges = {}
         for surface in self.slices:
             values = self.relative[surface.pixels]
             ranges[surface.surface_number] = IntensityRange(float(values.min()), float(values.max()))
-        least = min((each.minimum for each in ranges.values()), default=0.0)
-        most = max((each.maximum for each in ranges.values()), default=0.0)
+        counted = [ranges[number] for number in ranges if self.surfaces[number - 1] != self.apart]
+        counted = counted or [*ranges.values()]
+        least = min((each.minimum for each in counted), default=0.0)
+        most = max((each.maximum for each in counted), default=0.0)
         return {0: IntensityRange(least, most), **ranges}
 
     @property

@@ -24,7 +24,7 @@ from autocolor.errors import InputError
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.colors import HALVES_UP
-from autocolor.mapping.ranges import FEWEST_LEVELS, SURFACE_WORDS, USEFUL_LEVELS
+from autocolor.mapping.ranges import BACKDROP, FEWEST_LEVELS, SURFACE_WORDS, USEFUL_LEVELS
 from autocolor.scalars.computed import UNIT, widened
 from autocolor.scene.color_scales import scale_colors
 from autocolor.scene.scalar import Scalar
@@ -145,7 +145,8 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
         return {}
     low, high = scalar.limits or own_limits(picture)
     colored = colored_surfaces(scene)
-    used = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
+    seen = scene.staged
+    used = {seen.parts[number].surface for number in seen.mesh.parts_in_use}
     lacking = {
         picture.surfaces[each.surface_number - 1]
         for each in picture.slices
@@ -160,7 +161,8 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
         for row in rows
         if row.name in colored
     }
-    shades = _shades(scalar, rows, bands) if bands else 1
+    words = SURFACE_WORDS - BACKDROP.levels * scene.has_backdrop
+    shades = _shades(scalar, rows, bands, words) if bands else 1
     return {name: each._replace(shades=shades) for name, each in bands.items()}
 
 
@@ -182,7 +184,7 @@ def own_limits(picture: Picture) -> tuple[float, float]:
     return widened(*(picture.scalar_limits or UNIT))
 
 
-def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands]) -> int:
+def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands], words: int) -> int:
     """The shades of each band: the scalar's number if it has any, else as many as the words suffice for.
 
     Assumed: the levels that a colored surface asks for are meant for its paint, and its bands take the levels
@@ -191,7 +193,7 @@ def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Ban
     words.
     """
     others = [surface.levels for surface in surfaces if surface.name not in bands]
-    left = SURFACE_WORDS - sum(filter(None, others))
+    left = words - sum(filter(None, others))
     room, useful = (left - others.count(None) * fewest for fewest in (FEWEST_LEVELS, USEFUL_LEVELS))
     if room < 0:
         # The other surfaces ask for too much; `level_ranges` refuses that.

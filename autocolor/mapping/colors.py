@@ -68,7 +68,7 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> Bytes:
     A single level has the first color.
     """
     if paint.ramp is not None:
-        return _of_ramp(paint.ramp, levels)
+        return ramp_entries(paint.ramp, levels)
     return _blended(paint, color_shares(paint.blend, paint.light_percentage, levels, floor))
 
 
@@ -83,7 +83,7 @@ def entries_at(paint: Paint, fractions: Singles, levels: int, floor: float = 0.0
     return _blended(paint, _shares_at(level, paint.blend, paint.light_percentage, levels, floor))
 
 
-def _of_ramp(ramp: tuple[Color, ...], levels: int) -> Bytes:
+def ramp_entries(ramp: tuple[Color, ...], levels: int) -> Bytes:
     """The colors of a ramp at each level, (levels, 3) uint8, read-only."""
     colors = np.array(ramp, np.int64)
     steps, last = max(levels - 1, 1), len(ramp) - 1

@@ -21,9 +21,17 @@ from autocolor.errors import UsageError
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.bands import DARKEST, Bands, band_entries, bands_by_surface
-from autocolor.mapping.colors import entries_of
+from autocolor.mapping.colors import entries_of, ramp_entries
 from autocolor.mapping.intensity import ranges_of, words_of
-from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
+from autocolor.mapping.ranges import (
+    BACKDROP,
+    BACKGROUND,
+    SCREEN_COLORS,
+    SCREENS,
+    WORDS,
+    LevelRange,
+    level_ranges,
+)
 from autocolor.scene.columns import Tier
 from autocolor.scene.row_kinds import place_named
 from autocolor.scene.scene import Scene, costs_at_least
@@ -31,7 +39,7 @@ from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_points import SurfaceSlice
 from autocolor.visibility.watkins import numbers_by_line
 
-MAPPING: Final = ("scaling", "mapping", "exposure", "dither")
+MAPPING: Final = ("scaling", "mapping", "exposure", "dither", "has_backdrop")
 """The fields of a scene that its words depend on, besides the picture and the ranges; see `words_of`."""
 
 
@@ -92,6 +100,8 @@ class DisplayImage(ABC):
         table = np.zeros((WORDS, 3), np.uint8)
         table[BACKGROUND] = self.scene.background
         table[SCREENS.first :] = SCREEN_COLORS
+        if colors := self.scene.backdrop_colors:
+            table[BACKDROP.first : BACKDROP.last + 1] = ramp_entries(colors, BACKDROP.levels)
         for name, (first, levels) in self.ranges.items():
             table[first : first + levels] = self.entries_of(name)
         return read_only(table)
@@ -154,6 +164,7 @@ class LevelImage(DisplayImage):
                 vars(image)["_floors"] = before._floors
             return image
         words = words_of(picture, ranges, ranges_of(scene, picture), scene.mapping, scene.dither, bands)
+        words = with_backdrop(words, scene)
         return cls(scene, picture, ranges, in_blocks(words, block), block, bands)
 
     @property
@@ -188,6 +199,7 @@ class LevelImage(DisplayImage):
             and self.ranges is before.ranges
             and self.bands == before.bands
             and self.scene.background == before.scene.background
+            and self.scene.backdrop_colors == before.scene.backdrop_colors
             and self._has_floors_of(before)
         ):
             yield from super().loads_after(before)
@@ -252,21 +264,35 @@ def image_ranges(
             is_same = before.block == 1 and not costs_at_least(before.scene, scene, Tier.LEVELS)
         if is_same:
             return before.ranges
-    sizes = {scene.parts[number].surface: 0 for number in scene.mesh.parts_in_use}
+    seen = scene.staged
+    sizes = {seen.parts[number].surface: 0 for number in seen.mesh.parts_in_use}
     for surface in picture.slices:
         sizes[picture.surfaces[surface.surface_number - 1]] = size_of(surface)
-    ranges = level_ranges(scene.surfaces, sizes, scene.division, levels)
+    stage, has_backdrop = scene.stage_surface, scene.has_backdrop
+    ranges = level_ranges(
+        scene.surfaces, sizes, scene.division, levels, stage=stage, has_backdrop=has_backdrop
+    )
     return before.ranges if before is not None and before.ranges == ranges else ranges
 
 
 def _claims(scene: Scene) -> tuple[object, ...]:
     """The columns that the ranges depend on, besides the visible pixels."""
-    used = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
+    seen = scene.staged
+    used = {seen.parts[number].surface for number in seen.mesh.parts_in_use}
     return (
         scene.division,
         scene.words,
+        scene.has_backdrop,
         *((each.name, each.levels) for each in scene.surfaces if each.name in used),
     )
+
+
+def with_backdrop(words: Words, scene: Scene) -> Words:
+    """The words, (lines, elements), with those of the backdrop where nothing is visible, if there is one."""
+    if not scene.has_backdrop:
+        return words
+    down = BACKDROP.first + np.arange(len(words)) * BACKDROP.levels // len(words)
+    return read_only(np.where(words == BACKGROUND, down[:, None].astype(np.uint16), words))
 
 
 def in_blocks(words: Words, block: int) -> Words:
@@ -297,6 +323,8 @@ def words_by_line(image: DisplayImage) -> Iterator[tuple[int, Words]]:
 
 def _lines_of(image: DisplayImage) -> Iterator[tuple[int, Words]]:
     scene, picture = image.scene, image.picture
-    projected = projection(scene.mesh, scene.view, picture.lines, picture.elements, scene.interpolation)
+    mesh = scene.staged.mesh
+    projected = projection(mesh, scene.view, picture.lines, picture.elements, scene.interpolation)
+    empty = with_backdrop(np.full((picture.lines, 1), BACKGROUND, np.uint16), scene)
     for line, numbers in enumerate(numbers_by_line(projected)):
-        yield line, np.where(numbers > 0, image.words[line], np.uint16(BACKGROUND))[np.newaxis]
+        yield line, np.where(numbers > 0, image.words[line], empty[line])[np.newaxis]

@@ -273,7 +273,10 @@ def fractions_by_surface(
         of = WHOLE if extents[number] is extents[WHOLE] else number
         if of not in functions:
             everything = picture.relative if of == WHOLE else intensities_of[number]
-            functions[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
+            own = picture.relative_ranges[of]
+            if of == WHOLE and picture.apart:
+                own = IntensityRange(float(everything.min()), float(everything.max()))
+            functions[of] = fraction_of(extents[of], mapping, everything, own)
         functions[number] = functions[of]
     return {number: functions[number] for number in intensities_of}
 

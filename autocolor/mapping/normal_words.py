@@ -42,7 +42,7 @@ from autocolor.lighting.illumination import illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.rays import direction_to_eye, direction_to_light, middle_of
 from autocolor.mapping.colors import entries_at, entries_of
-from autocolor.mapping.display_image import DisplayImage, image_ranges, in_blocks
+from autocolor.mapping.display_image import DisplayImage, image_ranges, in_blocks, with_backdrop
 from autocolor.mapping.intensity import fractions_by_surface, ranges_of
 from autocolor.mapping.ranges import BACKGROUND, WORDS, LevelRange
 from autocolor.scene.columns import with_values
@@ -93,11 +93,12 @@ class NormalImage(DisplayImage):
             isinstance(before, NormalImage)
             and before.picture.normals is picture.normals
             and before.ranges is ranges
+            and before.scene.has_backdrop == scene.has_backdrop
         ):
             words, normals = before.words, before.normals
         else:
             words, normals = words_of_normals(picture, ranges)
-            words = in_blocks(words, block)
+            words = in_blocks(with_backdrop(words, scene), block)
         lit = normal_light(scene, normals)
         return cls(scene, picture, ranges, words, block, normals=normals, lit=lit)
 

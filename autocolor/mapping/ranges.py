@@ -52,6 +52,12 @@ class LevelRange(NamedTuple):
 SCREENS: Final = LevelRange(WORDS - SCREEN_LEVELS, SCREEN_LEVELS)
 """The words that the interactive screens draw with."""
 
+BACKDROP: Final = LevelRange(SCREENS.first - 32, 32)
+"""The words of the backdrop of a scene that has one, from the top of the picture to its bottom."""
+
+STAGE_LEVELS: Final = 128
+"""The most levels of a stage that is made and asks for no number; with the backdrop, it has 160 words."""
+
 SURFACE_WORDS: Final = SCREENS.first - BACKGROUND - 1
 """How many words the surfaces share."""
 
@@ -68,19 +74,27 @@ def level_ranges(
     covered: Mapping[str, int],
     division: str = "covered",
     fixed: Mapping[str, int] = MappingProxyType({}),
+    *,
+    stage: str = "",
+    has_backdrop: bool = False,
 ) -> Mapping[str, LevelRange]:
     """The level range of each surface in use, by name.
 
     `covered` has the number of pixels that each surface in use covers in the picture, 0 if it is not visible.
     A surface gets the number of levels that is `fixed` for it, such as by its bands, else the number that it
-    asks for. Surfaces without a number share the rest, equally or by the pixels that they cover. Raises
+    asks for. Surfaces without a number share the rest, equally or by the pixels that they cover. Of it, the
+    surface of the `stage` that is made takes STAGE_LEVELS, or fewer if the others would get too few. Raises
     InputError if that would leave fewer than two levels for a surface.
     """
     used = [surface for surface in surfaces if surface.name in covered]
     levels_of = {surface.name: fixed.get(surface.name, surface.levels) for surface in used}
-    room = SURFACE_WORDS
+    room = SURFACE_WORDS - BACKDROP.levels * has_backdrop
     asked = sum(levels for levels in levels_of.values() if levels is not None)
     sharing = [name for name, levels in levels_of.items() if levels is None]
+    if stage in sharing:
+        sharing.remove(stage)
+        left = min(max(room - asked - USEFUL_LEVELS * len(sharing), FEWEST_LEVELS), STAGE_LEVELS)
+        levels_of[stage], asked = left, asked + left
     if asked > room or (sharing and (room - asked) // len(sharing) < FEWEST_LEVELS):
         largest = max(levels_of, key=lambda name: levels_of[name] or 0)
         raise InputError(

@@ -136,6 +136,8 @@ class SceneFields(TypedDict, total=False):
     words: Literal["levels", "normals"]
     interpolation: Literal["scan line", "invariant", "linear"]
     background: str | Sequence[int]
+    stage: Literal["none", "floor", "bowl"]
+    backdrop: str | Sequence[str | Sequence[int]] | None
     front: Literal["x", "-x", "y", "-y"] | None
     views: Sequence[Row]
     scalar: Row | ScalarChanges | None

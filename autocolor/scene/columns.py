@@ -205,6 +205,9 @@ class Row(Immutable):
         inside = ((key, row.field) for key, row in keys_of(type(self)).items() if row.field != key)
         return [*super()._meant(), *(f"{field}.{key}" for key, field in inside)]
 
+    def complete(self) -> None:
+        """Fill in what other columns need, in place, before the rules. A column may be REFUSED."""
+
     def rules(self) -> Iterator[Problem]:
         """The problems of rules between columns. A column with an invalid value is REFUSED."""
         return iter(())
@@ -492,6 +495,7 @@ def check(row: Row, fields: Mapping[str, Column], problems: list[Problem]) -> No
         if value is not REFUSED and not (value is None and column.default is None):
             values[name] = column.kind.validated(value, (name,), problems)
     if type(row).rules is not Row.rules:
+        row.complete()
         problems.extend(row.rules())
     if problems:
         raise RowError(problems, row_label(row))

@@ -29,6 +29,7 @@ from autocolor.scene.defaults import (
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import MOST_PROBLEMS, Scene
+from autocolor.scene.stage import NONE, STAGE
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 
 LOG: Final = logger_of(__name__)
@@ -94,8 +95,9 @@ def scene_of(
     while shared in used:
         shared += " for all others"
     own = {surface.name for surface in given}
-    if len(own) == 1 and own.isdisjoint(names.union(row.surface for row in rows)):
-        (shared,) = own
+    of_parts = own if tables.get("stage", NONE) == NONE else own - {STAGE}
+    if len(of_parts) == 1 and of_parts.isdisjoint(names.union(row.surface for row in rows)):
+        (shared,) = of_parts
     of_material = {surface.name: surface for surface in materials if surface.name != shared}
     if surfaces == PARTS:
         # A part's own surface is like that of its material.

@@ -26,6 +26,9 @@ LOWEST_EYE: Final = 21.0
 HIGHEST_EYE: Final = 40.0
 """Assumed: the elevations of the eye of a new view, in degrees: above a solid object, and above a sheet."""
 
+AZIMUTH: Final = -55.0
+"""Assumed: the azimuth of the eye of a new view, in degrees from +x toward +y."""
+
 FLAT: Final = 0.5
 """Assumed: an object whose height over the root of its ground area is less is seen from higher."""
 
@@ -139,7 +142,7 @@ def default_view(coordinates: Floats) -> View:
     The flatter the object, the higher is the eye. `coordinates`, here and below, are the coordinates of the
     object's nodes, (nodes, 3).
     """
-    azimuth, elevation = math.radians(-55.0), math.radians(_elevation_above(*bounds_of(coordinates)))
+    azimuth, elevation = math.radians(AZIMUTH), math.radians(_elevation_above(*bounds_of(coordinates)))
     toward_eye = (
         math.cos(elevation) * math.cos(azimuth),
         math.cos(elevation) * math.sin(azimuth),

@@ -379,7 +379,7 @@ class ColorsKind(Kind[tuple[Color, ...]]):
     most: int
 
     def rule(self) -> str:
-        return f"must be a list of 2 to {self.most} colors"
+        return f"must be a list of 2{f' to {self.most}' if self.most > 2 else ''} colors"
 
     def accepted(self, value: Any) -> tuple[Color, ...]:
         require(not isinstance(value, UNORDERED))
@@ -388,7 +388,7 @@ class ColorsKind(Kind[tuple[Color, ...]]):
         return colors
 
     def advice(self, value: object) -> str:
-        return '; write them as in ["#200", "#f60", "#fff"]'
+        return '; write them as in ["#200", "#fff"]'
 
     def validated(self, value: object, path: Path, problems: list[Problem]) -> Any:
         given = value

@@ -51,7 +51,7 @@ from autocolor.scene.following import (
     vector_columns,
 )
 from autocolor.scene.in_1983 import changes_to_1983
-from autocolor.scene.kinds import CurveKind, Instance, color, number, one_of, text
+from autocolor.scene.kinds import ColorsKind, CurveKind, Instance, color, number, one_of, text
 from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig, axis_number, mirrored
@@ -65,6 +65,7 @@ from autocolor.scene.row_kinds import (
     table_row,
 )
 from autocolor.scene.scalar import COMPUTED, Scalar
+from autocolor.scene.stage import BACKDROP, NONE, STAGES, SURFACE, stage_part, with_stage
 from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Surface
 from autocolor.scene.view import MOST_VIEWS, NamedView, View
 
@@ -168,6 +169,19 @@ class Scene(Row):
     background: Color = color(
         default=(0, 0, 0), tier=Tier.ENTRIES, help="The color where nothing is visible."
     )
+    stage: str = one_of(
+        STAGES,
+        default=NONE,
+        tier=Tier.FRAME,
+        help="Whether the object stands on a floor, or in a bowl; the dark pool below it is painted, not"
+        " computed.",
+    )
+    backdrop: tuple[Color, ...] | None = column_of(
+        ColorsKind(2),
+        default=None,
+        tier=Tier.LEVELS,
+        help="Two colors behind everything, from the top of the picture down; if absent, a stage has grays.",
+    )
     front: str | None = one_of(
         FRONTS,
         default=None,
@@ -189,6 +203,13 @@ class Scene(Row):
         tier=Tier.NOTHING,
         help="The name of the scene, from its folder or file.",
     )
+
+    def complete(self) -> None:
+        """Add the surface of the stage, if the scene has a stage and no surface of that name."""
+        if self.stage != NONE and self.parts is not REFUSED and self.surfaces is not REFUSED:
+            name = stage_part(self.parts).surface
+            if name not in [row.name for row in self.surfaces]:
+                vars(self)["surfaces"] = TableRows((*self.surfaces, SURFACE.replace(name=name)))
 
     def rules(self) -> Iterator[Problem]:
         """The parts match the mesh, all references are valid, and there are few enough surfaces and views.
@@ -457,6 +478,36 @@ class Scene(Row):
             return replaced(self, {table: rows})
         return with_values(self, {table: rows})
 
+    @property
+    def backdrop_colors(self) -> tuple[Color, ...]:
+        """The colors of the backdrop from the top of the picture; none if there is only the background."""
+        return self.backdrop or (BACKDROP if self.stage != NONE else ())
+
+    @property
+    def has_backdrop(self) -> bool:
+        """Whether there is a backdrop where nothing is visible."""
+        return bool(self.backdrop_colors)
+
+    @property
+    def stage_surface(self) -> str:
+        """The name of the surface of the stage that is made; empty if `stage` is "none"."""
+        return stage_part(self.parts).surface if self.stage != NONE else ""
+
+    @property
+    def staged(self) -> Scene:
+        """The scene as it is rendered: a stage that is made is a part of the mesh.
+
+        It is the scene itself if there is none to make, or if the eye is not above the floor.
+        """
+        mesh = with_stage(self.mesh, self.parts, self.stage, self.view.eye) if self.stage != NONE else None
+        if mesh is None:
+            return self
+        # Cached properties depend on the mesh and the parts, so they are not copied.
+        parts = TableRows((*self.parts, stage_part(self.parts)))
+        copy, values = object.__new__(Scene), {name: vars(self)[name] for name in fields_of(Scene)}
+        vars(copy).update({**values, "mesh": mesh, "parts": parts, "stage": NONE})
+        return copy
+
     @cached_property
     def surface_number_of_part(self) -> tuple[int, ...]:
         """The surface number, counted from 1, of each part."""
@@ -508,7 +559,8 @@ def unseen_recoloring(old: Scene, new: Scene, surface: str) -> str:
     """Why no picture shows the recoloring of a surface by `with_paint`; empty if one can show it."""
     if new is old:
         return f"surface {shown(surface)} has these colors already; the recoloring changes nothing"
-    if all(new.parts[part].surface != surface for part in new.mesh.parts_in_use):
+    in_use = {new.parts[part].surface for part in new.mesh.parts_in_use}
+    if surface not in (*in_use, new.stage_surface):
         return f"surface {shown(surface)} has no polygons; no picture shows its colors"
     return ""
 

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Words
-from autocolor.mapping.ranges import BACKGROUND, SCREENS, WORDS, LevelRange
+from autocolor.mapping.ranges import BACKDROP, BACKGROUND, SCREENS, WORDS, LevelRange
 from autocolor.screens.screen import Screen
 from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, YELLOW, Item, fitted, text
 
@@ -67,10 +67,16 @@ class EntriesScreen(Screen):
     is_in_menu = False
 
     def base(self) -> Words:
-        return cell_words(tuple(self.session.studio.level_ranges.values()))
+        return cell_words(tuple(self._ranges.values()))
 
     def items(self) -> Sequence[Item]:
-        return entries_items(self.session.studio.level_ranges)
+        return entries_items(self._ranges)
+
+    @property
+    def _ranges(self) -> Mapping[str, LevelRange]:
+        """The level ranges, and the words of the backdrop."""
+        backdrop = {"backdrop": BACKDROP} if self.session.scene.has_backdrop else {}
+        return {**backdrop, **self.session.studio.level_ranges}
 
 
 def entries_items(ranges: Mapping[str, LevelRange]) -> list[Item]:

@@ -71,7 +71,7 @@ class MappingScreen(OverPicture):
 
     def rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
-        others = ("name", "view", "scalar", "front")
+        others = ("name", "view", "scalar", "front", "stage", "backdrop")
         return [
             Choice(
                 "mapping",

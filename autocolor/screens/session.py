@@ -211,12 +211,13 @@ class Session:
     def world(self) -> World:
         """The bounds of the object, from which bars get their range, and the names of the tables."""
         scene = self.scene
+        mesh = scene.staged.mesh
 
         def world() -> World:
-            low, high = (tuple(corner.tolist()) for corner in scene.mesh.bounds)
+            low, high = (tuple(corner.tolist()) for corner in mesh.bounds)
             return World(*scene.object_bounds, self._names, (low, high))
 
-        return self._world.of(world, scene.mesh, scene.parts)
+        return self._world.of(world, mesh, scene.parts)
 
     def _names_in(self, table: str) -> tuple[str, ...]:
         return tuple([row.name for row in vars(self.scene)[table]])

@@ -291,7 +291,7 @@ def seen_at(sight: Sight, line: int, element: int) -> Seen | None:
     place = sight.place_at(line, element)
     if place is None:
         return None
-    scene, points = sight.scene, sight.points
+    scene, points = sight.scene.staged, sight.points
     span = np.searchsorted(np.cumsum(points.span_lengths), place, side="right")
     polygon = int(points.span_polygons[span])
     part = scene.parts[scene.mesh.part_numbers[polygon]]

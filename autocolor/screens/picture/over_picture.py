@@ -33,7 +33,7 @@ from autocolor.studio import Studio
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Pair, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Entry, Pair, Switch, Widget
 from ramtek_emu import instructions
 
 
@@ -91,7 +91,8 @@ class OverPicture(Screen):
         pointed = self._pointed(gesture.element, gesture.line)
         if pointed is None:
             on_legend = self._is_on_legend(gesture.element, gesture.line)
-            session.tell("the legend: drag it" if on_legend else "the background")
+            empty = "the backdrop" if session.scene.backdrop_colors else "the background"
+            session.tell("the legend: drag it" if on_legend else empty)
             return
         session.choose_surface(pointed.surface)
         session.part_name = pointed.part
@@ -261,6 +262,27 @@ def exposure_row(edits: PictureEdits) -> Choice:
         present=next(iter(words), ALL_HELD if all(held) else MIXED),
         choose=edits.choose_exposure,
     )
+
+
+def stage_rows(edits: PictureEdits) -> list[Widget]:
+    """The row of the stage of the object, and where there is a backdrop, the rows of its two colors."""
+    session, colors = edits.session, edits.session.scene.backdrop_colors
+
+    def put(changes: Mapping[str, Any]) -> None:
+        session.edit(session.scene.replace(**changes))
+
+    def entry(label: str, number: int) -> Entry:
+        help = "The color behind everything at the top or the bottom of the picture, as a name or #rrggbb."
+        others = colors[:number], colors[number + 1 :]
+        return Entry(
+            label,
+            help,
+            value=in_digits(colors[number]),
+            take=lambda color: put({"backdrop": [*others[0], color, *others[1]]}),
+        )
+
+    row = rows_of(session.scene, put, session.world, columns=("stage",))
+    return [*row, entry("backdrop", 0), entry("  bottom", 1)] if colors else row
 
 
 def camera_rows(edits: PictureEdits) -> list[Widget]:

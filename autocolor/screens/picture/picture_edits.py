@@ -15,6 +15,7 @@ from autocolor.mapping.intensity import is_held
 from autocolor.scene.defaults import OBJECT_COLORS, default_view, framed, stage_top
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene
+from autocolor.scene.stage import NONE, shape_of
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
 from autocolor.screens.naming import name_view
@@ -196,6 +197,8 @@ class PictureEdits:
     def stage_top(self) -> float:
         """The largest z coordinate of the stage; minus infinity without a stage."""
         scene = self.session.scene
+        if scene.stage != NONE:
+            return max(stage_top(scene.mesh, scene.parts), shape_of(scene.mesh, scene.parts).floor)
         return self._top.of(lambda: stage_top(scene.mesh, scene.parts), scene.mesh, scene.parts)
 
     def turn(self, right: float, up: float) -> None:
@@ -309,6 +312,8 @@ class PictureEdits:
     def _fill(self, parts: Sequence[int]) -> None:
         """Move the eye so that some parts, by their numbers, fill the picture."""
         scene = self.session.scene
+        if not parts:
+            raise UsageError("the view fills with the object, not with its stage; click a part of the object")
         self.look(framed(scene.view, scene.mesh.coordinates_of_parts(parts)))
 
     def tilt(self, degrees: float) -> None:

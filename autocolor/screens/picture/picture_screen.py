@@ -11,7 +11,7 @@ from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.file_actions import ask_to_leave, lying, seeming_up, stand_up
 from autocolor.screens.light_parameters import all_lights_on, light_alone
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.over_picture import OverPicture, camera_rows, surface_row, word_at
+from autocolor.screens.picture.over_picture import OverPicture, camera_rows, stage_rows, surface_row, word_at
 from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, SENT, Session
@@ -83,6 +83,7 @@ class PictureScreen(OverPicture):
                 session,
                 "The surface that you edit; a click in the picture chooses, too.",
             ),
+            *stage_rows(edits),
             Section("light switches"),
             *self._light_rows(),
             Section("turn & move"),

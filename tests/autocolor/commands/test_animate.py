@@ -31,7 +31,7 @@ def test_a_picture_file_cycles_its_colors_without_its_mesh(saved: Path, run: Run
     assert ran == (0, "", "wrote cycle.ramtek, 5 frames\n")
     refused("animate scene.npz --vary view.angle=0,9 --frames 5 -o cycle.ramtek --force", 65)
     assert refused("animate scene.npz --turn 9 --normals -o a.webp", 2) == (
-        "--normals is for a scene, not for a picture file, which has no normals; leave it out"
+        "--normals is for a scene, not for a picture file; leave it out"
     )
 
 

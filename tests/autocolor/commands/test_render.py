@@ -24,6 +24,14 @@ def test_a_bare_mesh_becomes_a_picture_of_its_name(folder: Path, run: Run) -> No
     assert (pixels("two.png") == image(scene)).all()
 
 
+def test_a_stage_is_a_key_of_the_scene_by_another_name(folder: Path, run: Run, refused: Refused) -> None:
+    assert run("render", "two.obj", *SMALL, "--stage", "bowl", "--save", "bowl.npz").code == 0
+    scene = read_scene("two.obj").replace(stage="bowl")
+    assert (image(*read_picture("bowl.npz")) == image(scene, size=(32, 24), smooth=1)).all()
+    sentence = refused("sweep bowl.npz --stage floor --vary ambient=0,1 -o {ambient}.png", 2)
+    assert sentence == "--stage is for a scene, not for a picture file; leave it out"
+
+
 def test_without_smooth_edges_a_picture_is_the_field_of_a_display(folder: Path, run: Run) -> None:
     assert run("render", "scene", "--smooth", "1") == (0, "", "wrote scene.png\n")
     display = Ramtek9300()

@@ -82,6 +82,8 @@ EDITS: dict[str, dict[str, Values]] = {
         "interpolation": {"interpolation": "invariant"},
         "front": {"front": "-x"},
         "background": {"background": "#102030"},
+        "stage": {"stage": "bowl"},
+        "backdrop": {"backdrop": ["#102030", "#8090a0"]},
     },
     "view": OF_A_VIEW,
     "views": OF_A_VIEW,

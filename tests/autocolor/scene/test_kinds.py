@@ -56,7 +56,7 @@ def accepted(given: tuple[Kind[Any], Any]) -> Any:
 
 
 COLOR = 'it must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255, not '
-NO_COLORS = '; write them as in ["#200", "#f60", "#fff"]'
+NO_COLORS = '; write them as in ["#200", "#fff"]'
 SENTENCES: list[tuple[tuple[Kind[Any], Any], str]] = [
     ((Number(), 10**400), f"it must be a finite number, not {shown(10**400)}"),
     ((Number(), HUGE), "it must be a finite number, not a very large int"),

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import Scene, View
-from autocolor.screens.picture.picture_edits import moved, panned, seen_from, sides_of, turned
+from autocolor import Scene, UsageError, View
+from autocolor.screens.picture.picture_edits import PictureEdits, moved, panned, seen_from, sides_of, turned
 from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
 from autocolor.screens.steps import undo
-from autocolor.widgets.widget import Choice, Switch
+from autocolor.widgets.widget import Choice, Entry, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
 
@@ -129,3 +129,18 @@ def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
     middle, (x, y, z) = start.view.eye, views[2].eye
     assert (x, z) == pytest.approx((0, 0), abs=1e-6)
     assert middle[1] < y < -1
+
+
+def test_a_stage_is_a_row_and_its_backdrop_has_two_colors(hand: Hand) -> None:
+    start = hand.scene
+    assert "backdrop" not in hand.labels
+    hand.pick("stage", 0.9)
+    assert hand.scene.equals(start.replace(stage="floor"))
+    hand.open_menu()
+    row = hand.widget("  bottom")
+    assert isinstance(row, Entry)
+    row.take("#123456")
+    assert hand.scene.backdrop_colors == (start.replace(stage="floor").backdrop_colors[0], (18, 52, 86))
+    hand.viewer.session.choose_surface("stage")
+    with pytest.raises(UsageError, match="the view fills with the object, not with its stage"):
+        PictureEdits(hand.viewer.session).rescale(True)
