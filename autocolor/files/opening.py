@@ -15,7 +15,7 @@ from typing import Any, Final, NamedTuple
 
 from autocolor.budget import allowing
 from autocolor.checks import shown
-from autocolor.errors import InputError, UsageError, reason_of
+from autocolor.errors import AutocolorError, InputError, UsageError, reason_of
 from autocolor.files import formats
 from autocolor.files.formats import (
     FILE_FORMATS,
@@ -39,10 +39,12 @@ from autocolor.files.meshes.up_axis import seems_to_lie
 from autocolor.files.palette_file import GPL
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES, is_within
 from autocolor.files.picture_file import read_picture
-from autocolor.files.reading import status_of
+from autocolor.files.reading import read_bytes, status_of
+from autocolor.files.rig_file import RIG_SUFFIX
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import SOURCES, MeshSource
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.store.store_file import read_store, write_store
 from autocolor.files.writing import table_exists
@@ -249,8 +251,9 @@ class Openable(NamedTuple):
 
 
 def openables_of(folder: Path) -> list[Openable]:
-    """The files of a folder that can be opened, then its folders, by name; hidden names are left out.
+    """The files of a folder that can be opened, then its folders, by name.
 
+    Hidden names are left out, and TOML files that are neither a scene nor a rig, such as pyproject.toml.
     Raises InputError if the folder cannot be read.
     """
     try:
@@ -264,7 +267,19 @@ def openables_of(folder: Path) -> list[Openable]:
     names.sort(key=lambda name: re.sub(r"\d+", lambda number: number[0].zfill(20), name.casefold()))
     paths = [folder / name for name in names if not name.startswith(".")]
     openables = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
+    openables = [each for each in openables if each.kind == FOLDER or not is_other_toml(each.path)]
     return sorted(openables, key=lambda openable: openable.kind == FOLDER)
+
+
+def is_other_toml(path: Path) -> bool:
+    """Whether a TOML file can be read, and is neither a scene nor a rig."""
+    if path.suffix.lower() != RIG_SUFFIX:
+        return False
+    try:
+        document = parsed_toml(read_bytes(path, LARGEST_TEXT), path.name, "a scene file")
+    except AutocolorError:
+        return False
+    return "mesh" not in document and "minimum" not in document
 
 
 def kind_of(path: Path) -> str:

@@ -26,6 +26,7 @@ from autocolor.files.stamps import numbers_of, stamp_of
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scene import Scene
+from autocolor.scene.stage import NONE
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
 """The folder of this package, with the built-in demo; nothing is saved there."""
@@ -186,7 +187,11 @@ def file_of(source: Source) -> Path | None:
 
 def checksum_of(scene: Scene) -> str:
     """The SHA-256 of all values of a scene, its mesh and scalars included, in hexadecimal digits."""
-    digest = hashlib.sha256(json.dumps(plain_scene(scene), sort_keys=True).encode())
+    plain = plain_scene(scene)
+    if scene.stage == NONE:
+        # The scenes of journals that know no stage keep their checksums.
+        del plain["stage"]
+    digest = hashlib.sha256(json.dumps(plain, sort_keys=True).encode())
     mesh = scene.mesh
     for array, kind in ((mesh.coordinates, "<f8"), (mesh.node_numbers, "<i8"), (mesh.part_numbers, "<i8")):
         digest.update(np.ascontiguousarray(array, kind).tobytes())

@@ -45,11 +45,14 @@ from autocolor.widgets.items import (
     segments,
     text,
 )
-from autocolor.widgets.menu import WORK
+from autocolor.widgets.menu import WORK, Section
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget, short_name
 
 POINTS: Final = "points"
+
+OF_DISPLAY: Final = ("scaling", "division", "dither", "interpolation")
+"""The columns that say how words stand for levels; their rows are behind a fold."""
 
 
 class MappingScreen(OverPicture):
@@ -71,7 +74,7 @@ class MappingScreen(OverPicture):
 
     def rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
-        others = ("name", "view", "scalar", "front", "stage", "backdrop")
+        others = ("name", "view", "scalar", "front", "stage", "backdrop", *OF_DISPLAY)
         return [
             Choice(
                 "mapping",
@@ -93,6 +96,8 @@ class MappingScreen(OverPicture):
             *held_rows(session, self._put),
             Gap("scene gap"),
             *rows_of(scene, self._put, session.world, leave_out=others),
+            Section("display words"),
+            *rows_of(scene, self._put, session.world, columns=OF_DISPLAY),
         ]
 
     def _remove_row(self) -> Widget:

@@ -110,9 +110,9 @@ def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
 
 
 def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_path: Path) -> None:
-    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml a.npz a.db b.GPL d.csv"
+    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml other.toml a.npz a.db b.GPL d.csv"
     for name in files.split():
-        (tmp_path / name).write_text("")
+        (tmp_path / name).write_text("minimum = [0, 0, 0]" if name == "lights.toml" else "")
     for name in ("b", "a scene", "a mesh", ".git"):
         (tmp_path / name).mkdir()
     (tmp_path / "a scene" / "scene.toml").write_text("")
