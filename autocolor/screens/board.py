@@ -20,7 +20,7 @@ from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
 from autocolor.screens.main_menu import last_rows, rows_of_menu
 from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items, offer_button
-from autocolor.screens.screen import Handle, Sample, Screen
+from autocolor.screens.screen import Handle, Sample, Screen, surface_of
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
@@ -590,7 +590,11 @@ class Board:
         if handle is not None:
             # A hint would cover a handle at the foot of the picture.
             return handle.line < MESSAGE.top
-        return self.screen.shows_picture and self.screen.sample(element, line) is not None
+        studio, screen = self.session.studio, self.screen
+        lines, elements = studio.words.shape
+        if not (screen.shows_picture and screen.shows_scene) or line >= lines or element >= elements:
+            return False
+        return bool(surface_of(studio, int(studio.words[line, element])))
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer

@@ -14,6 +14,7 @@ from autocolor.checks import Color
 from autocolor.errors import UsageError
 from autocolor.screens.input import Gesture
 from autocolor.screens.session import Session
+from autocolor.studio import Studio
 from autocolor.widgets.items import NIGHT, Area, Item
 from autocolor.widgets.widget import NOWHERE, Place, Widget
 
@@ -41,6 +42,12 @@ class Sample(NamedTuple):
     surface: str
     color: Color
     level: int
+
+
+def surface_of(studio: Studio, word: int) -> str:
+    """The name of the surface that owns a word; empty for the background and the words of screens."""
+    ranges = studio.level_ranges.items()
+    return next((name for name, levels in ranges if levels.first <= word <= levels.last), "")
 
 
 class Screen:

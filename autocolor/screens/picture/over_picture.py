@@ -25,11 +25,10 @@ from autocolor.screens.cached import Cached
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.naming import name_view
 from autocolor.screens.picture.picture_edits import ALL_HELD, PictureEdits
-from autocolor.screens.screen import Sample, Screen
+from autocolor.screens.screen import Sample, Screen, surface_of
 from autocolor.screens.session import EXPLAIN, Session
 from autocolor.screens.steps import end_comparing
 from autocolor.screens.surface.painting import change_paint, color_of
-from autocolor.studio import Studio
 from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.rows import rows_of
@@ -174,12 +173,6 @@ def word_at(session: Session, element: int, line: int) -> int:
     ((read, count),) = instructions.read_image(element, line, 1, 1)
     session.display.send(read)
     return int(session.display.receive(count)[0])
-
-
-def surface_of(studio: Studio, word: int) -> str:
-    """The name of the surface that owns a word; empty for the background and the words of screens."""
-    ranges = studio.level_ranges.items()
-    return next((name for name, levels in ranges if levels.first <= word <= levels.last), "")
 
 
 class Pointed(NamedTuple):

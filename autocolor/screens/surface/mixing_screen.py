@@ -41,8 +41,8 @@ from autocolor.scene.surfaces import MOST_RAMP_COLORS, Paint
 from autocolor.scene.swatches import mixed
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import FIRST_RAMP_COLORS, paint_rows, surface_of, surface_row
-from autocolor.screens.screen import Sample, Screen
+from autocolor.screens.picture.over_picture import FIRST_RAMP_COLORS, paint_rows, surface_row
+from autocolor.screens.screen import Sample, Screen, surface_of
 from autocolor.screens.session import Session
 from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
 from autocolor.screens.surface.paint_choices import PaintChoices

@@ -49,6 +49,7 @@ def points_of(hand: Hand) -> CurvePoints:
 def test_every_parameter_of_the_mapping_has_a_row(hand: Hand) -> None:
     labels = {row.label for row in hand.viewer.board.screen.rows()}
     tables = {"mesh", "parts", "surfaces", "lights", "view", "views", "scalar", "name", "background", "front"}
+    tables |= {"stage", "backdrop"}
     assert labels >= set(fields_of(Scene)) - tables
 
 
