@@ -498,7 +498,7 @@ LIGHTS = (
 # If the views change on purpose, look at them, and copy the new numbers from the failure.
 DRAWN = {
     "all lights": 3008843501,
-    "held": 2835923062,
+    "held": 2795551590,
     "the eye and the mesh": 55816875,
     "nearer": 1193104313,
     "the coupe": 2705044763,
