@@ -438,3 +438,13 @@ def test_points_behind_the_eye_have_no_place() -> None:
     view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0))
     points = np.array([(0.0, -9.0, 0.0), (0.0, 0.0, 0.0)])
     assert places_of(points, view).tolist() == [[SCREEN.width / 2 - 0.5, SCREEN.height / 2 - 0.5]]
+
+
+def test_a_second_click_at_the_heading_of_a_section_picks_no_row_below_it(hand: Hand) -> None:
+    files = sorted(hand.viewer.session.folder.iterdir())
+    heading = next(row for row in hand.viewer.board.layout.rows if row.label == "add & remove")
+    place = heading.area.left + 20, heading.area.top + 5
+    for is_open in (True, False):
+        hand.click(*place)
+        assert ("mirror" in hand.labels) == is_open
+    assert sorted(hand.viewer.session.folder.iterdir()) == files

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor import HalfSpace, Light, Scene, Studio, read_scene, write_rig, write_scene
@@ -18,6 +19,7 @@ from autocolor.screens.keys import toggle
 from autocolor.screens.session import LEAST_SECONDS, MESSAGE_SECONDS
 from autocolor.screens.steps import undo
 from autocolor.screens.viewer import Viewer
+from autocolor.sending import shown_colors
 from ramtek_emu import Ramtek9300
 from tests.autocolor.files.store.stores import run, small_scene
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before, seen_on
@@ -546,3 +548,17 @@ def test_the_whole_drag_is_compared_when_it_ends(tmp_path: Path) -> None:
     hand.viewer.on_tick()
     assert hand.message.startswith("undone: key: intensity")
     assert hand.scene is ALONE
+
+
+def test_the_offer_beside_the_message_holds_the_ranges_before_the_edit(tmp_path: Path) -> None:
+    hand = hand_before(ALONE, tmp_path)
+    before = shown_colors(hand.viewer.studio.display_image)
+    hand.press("escape")
+    hand.viewer.session.edit(ALONE.with_light("key", intensity=0.5))
+    hand.viewer.on_tick()
+    assert np.array_equal(shown_colors(hand.viewer.studio.display_image), before)
+    hand.pick("hold all")
+    assert shown_colors(hand.viewer.studio.display_image).sum() < 0.8 * before.sum()
+    # The light of before is as bright as it was.
+    hand.viewer.session.edit(hand.scene.with_light("key", intensity=1.0))
+    assert np.array_equal(shown_colors(hand.viewer.studio.display_image), before)

@@ -144,3 +144,17 @@ def test_a_stage_is_a_row_and_its_backdrop_has_two_colors(hand: Hand) -> None:
     hand.viewer.session.choose_surface("stage")
     with pytest.raises(UsageError, match="the view fills with the object, not with its stage"):
         PictureEdits(hand.viewer.session).rescale(True)
+
+
+def test_highlights_are_marked_while_the_pointer_rests_on_the_object(tmp_path: Path) -> None:
+    hand = hand_before(ball_scene(), tmp_path)
+    hand.viewer.tell("")
+    bare = hand.viewer.board.page().items
+    hand.move(*MIDDLE)
+    hand.viewer.on_tick()
+    assert len(hand.viewer.board.page().items) > len(bare)
+    assert hand.hint == "ball, paint: drag turns, click chooses, Shift explains"
+    hand.move(20, 20)
+    hand.viewer.on_tick()
+    hand.viewer.tell("")
+    assert list(hand.viewer.board.page().items) == []
