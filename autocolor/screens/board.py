@@ -592,7 +592,8 @@ class Board:
             return handle.line < MESSAGE.top
         studio, screen = self.session.studio, self.screen
         lines, elements = studio.words.shape
-        if not (screen.shows_picture and screen.shows_scene) or line >= lines or element >= elements:
+        speaks = screen.shows_picture and screen.shows_scene and not self.hides_panels
+        if not speaks or line >= lines or element >= elements:
             return False
         return bool(surface_of(studio, int(studio.words[line, element])))
 

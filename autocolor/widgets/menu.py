@@ -79,18 +79,13 @@ def pages_of(rows: Sequence[Widget], lines: int = MOST_LINES) -> list[list[Widge
     used = 0
     for row in rows:
         if used + row.row_lines > lines - ROW_LINES:
-            # A heading goes with the row below it.
-            headings = [pages[-1].pop()] if len(pages[-1]) > 1 and is_over_rows(pages[-1][-1]) else []
+            # A heading goes with the row below it; that of a section stays under the pointer that opened it.
+            headings = [pages[-1].pop()] if len(pages[-1]) > 1 and isinstance(pages[-1][-1], Heading) else []
             pages.append(headings)
             used = lines_of(headings)
         pages[-1].append(row)
         used += row.row_lines
     return pages
-
-
-def is_over_rows(row: Widget) -> bool:
-    """Whether a row is a heading, or an open section."""
-    return isinstance(row, Heading) or (isinstance(row, Section) and row.is_open)
 
 
 def page_of_menu(
@@ -255,15 +250,16 @@ def open_sections(heights: Mapping[str, int], folds: Mapping[str, bool], room: i
     """The sections that are open, by the heights of their rows and the lines of room for all of these rows.
 
     `folds` has whether sections are to be open or folded, the last used section at the end. That section and
-    the sections above it are as `folds` has them, so that its heading stays in its place; only if they do not
-    fit, the nearest above are folded. The sections below are open while there is room, unless they are folded
-    in `folds`.
+    the sections above it are as `folds` has them, so that its heading stays in its place; only if it fits
+    without them, the nearest above are folded. The sections below are open while there is room, unless they
+    are folded in `folds`.
     """
     names = list(heights)
     used = next((name for name in reversed(list(folds)) if name in heights), None)
     end = 0 if used is None else names.index(used) + 1
     is_open = [name for name in names[:end] if folds.get(name, False)]
-    while len(is_open) > 1 and sum(heights[name] for name in is_open) > room:
+    most = len(is_open) if used in is_open and heights[used] > room else 1
+    while len(is_open) > most and sum(heights[name] for name in is_open) > room:
         del is_open[-2 if is_open[-1] == used else -1]
     for name in names[end:]:
         if folds.get(name, True) and sum(heights[each] for each in (*is_open, name)) <= room:

@@ -55,7 +55,7 @@ class PictureScreen(OverPicture):
     def idle(self) -> bool:
         had_marks = self._has_marks
         is_on_object = min(self.pointer) >= 0 and self._pointed(*self.pointer) is not None
-        self._has_marks = is_on_object and not self.session.explains
+        self._has_marks = is_on_object and self.has_panels and not self.session.explains
         return self._has_marks != had_marks
 
     def handles(self) -> Sequence[Handle]:

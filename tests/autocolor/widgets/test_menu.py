@@ -190,7 +190,8 @@ def test_a_used_section_and_those_above_stay_as_they_are_if_they_fit(
     used = [name for name in folds if name in heights][-1:]
     above = names[: names.index(used[0]) + 1] if used else []
     wanted = [name for name in above if folds.get(name, False)]
-    if not used or sum(heights[name] for name in wanted) <= room:
+    fits = not used or used[0] not in wanted or heights[used[0]] <= room
+    if not used or not fits or sum(heights[name] for name in wanted) <= room:
         assert is_open & set(above) == set(wanted)
     else:
         # The nearest above are folded first, and the used section last.
