@@ -80,7 +80,7 @@ def test_one_row_more_than_fits_makes_a_page_more(count: int, last: int, sizes: 
 
 @pytest.mark.parametrize(
     ("over", "goes_with"),
-    [(Heading("over"), True), (Section("over"), True), (Section("over", is_open=False), False)],
+    [(Heading("over"), True), (Section("over"), False), (Section("over", is_open=False), False)],
 )
 def test_a_heading_is_on_the_page_of_the_row_below_it(over: Widget, goes_with: bool) -> None:
     rows = buttons(60)
