@@ -141,14 +141,15 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     assert list(state.glob("sessions/*")) == []
 
     # The hand may have left undone steps, which stay undone.
-    steps = len(studio.history.to_undo)
-    while studio.undo():
+    steps, view = len(studio.history.to_undo), studio.scene.view
+    while studio.undo() or studio.view_back():
         pass
     viewer.clear()
     assert held(display) == first
-    assert studio.scene is studio.history.start
     for _ in range(steps):
         studio.redo()
+    # The present view stayed.
+    studio.edit(studio.scene.replace(view=view))
     viewer.clear()
     assert held(display) == last
 

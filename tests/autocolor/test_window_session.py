@@ -220,6 +220,8 @@ def test_a_key_held_down_is_one_view_to_go_back_from_and_after_it_is_released_no
     session: Session,
 ) -> None:
     session.hold_right()
+    # Over the object, highlights are marked.
+    session.tool("mousemove", "2", "2")
     session.press("alt+Left")
     session.wait_for_the_field()
     session.wait_for(lambda: session.caption() == "autocolor - box - [front]")
@@ -261,6 +263,8 @@ def test_a_drag_turns_the_object_and_is_one_view_to_go_back_from(session: Sessio
     session.wait_for(lambda: not session.shows_the_field())
     session.tool("mouseup", "1")
     session.wait_for_caption("autocolor - box*")
+    # Over the object, highlights are marked.
+    session.tool("mousemove", "2", "2")
     session.press("alt+Left")
     session.wait_for_the_field()
     session.wait_for(lambda: session.caption() == "autocolor - box - [front]")

@@ -247,7 +247,7 @@ def test_a_session_is_gone_on_with_in_full_screen_and_removed_when_it_ends(
     sessions: Path, run: Run, monitors: list[Any]
 ) -> None:
     assert run("view", "--recover", "2026-01-01", "--full-screen", "--fit").code == 0
-    assert (monitors[1].full_screen, monitors[1].fit) == (True, True)
+    assert (monitors[1].full_screen, monitors[1].glass.fit) == (True, True)
     assert monitors[1].caption.startswith("autocolor - scene* - ")
     assert not (sessions / "2026-01-01-a").exists()
     assert (sessions / "2026-01-02-b").exists()

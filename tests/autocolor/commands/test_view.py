@@ -82,7 +82,7 @@ def test_the_input_of_the_window_reaches_the_viewer_and_its_caption_the_window()
     viewer.session.leaves = False
     monitor: Any = connected(Monitor(Ramtek9300()), viewer, update)
     monitor.on_key(Key("c", "C", shift=True))
-    viewer.on_key.assert_called_once_with("c", False, True, "C", False)
+    viewer.on_key.assert_called_once_with("c", False, True, "C", False, False)
     monitor.on_pointer(Pointer(300, 200, "press", 1, 2, control=True))
     viewer.on_pointer.assert_called_once_with(300, 200, "press", 1, 2, False, True)
     assert (monitor.caption, monitor.screenshots) == ("one", viewer.folder)
