@@ -372,7 +372,7 @@ class Board:
             return
         elif self.held is not None:
             # If the place is refused, the handle stays picked.
-            self.screen.place(self.held, element, line)
+            self.held.place(element, line)
             self._let_go()
         else:
             # Modifiers are for the screen.
@@ -381,7 +381,7 @@ class Board:
                 self.screen.pick(gesture)
                 return
             self.held = handle
-            self.screen.hold(handle)
+            handle.hold()
             self.session.tell(f"{handle.label}: pick its new place")
 
     def _leaves_list(self) -> bool:
@@ -431,7 +431,7 @@ class Board:
             element, line = self._pointer
             at_sign = Place(element - handle.element, line - handle.line)
             self._from_handle = at_sign if handle.sign.has(element, line) else Place(0, 0)
-            self.screen.hold(handle)
+            handle.hold()
         elif not self.is_covered(*self._pointer):
             self._grabbed = self.screen
 
@@ -445,7 +445,7 @@ class Board:
                 self._grabbed.drag(start, Place(last.element, last.line), self._pointer)
         elif isinstance(self._grabbed, Handle):
             element, line = self._from_handle
-            self.screen.place(self._grabbed, gesture.element - element, gesture.line - line)
+            self._grabbed.place(gesture.element - element, gesture.line - line)
         elif self._grabbed is not None:
             self._grabbed.drag(self._start, last, gesture)
 

@@ -128,12 +128,6 @@ class LightsScreen(OverPicture):
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         return self._handles.preferred(near, element, line)
 
-    def hold(self, handle: Handle) -> None:
-        self._handles.hold(handle)
-
-    def place(self, handle: Handle, element: int, line: int) -> None:
-        self._handles.place(handle, element, line)
-
     def rows(self) -> Sequence[Widget]:
         light = self.session.chosen_light
         if light is None:

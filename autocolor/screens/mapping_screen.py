@@ -123,17 +123,15 @@ class MappingScreen(OverPicture):
 
     def handles(self) -> Sequence[Handle]:
         return [
-            Handle(number, *place_of(x, y), f"intensity {x:.2f}, level {y:.2f}")
+            Handle(
+                number,
+                *place_of(x, y),
+                f"intensity {x:.2f}, level {y:.2f}",
+                place=partial(self._move, number),
+                hold=partial(setattr, self, "_touched", number),
+            )
             for number, (x, y) in enumerate(self._points() if self.has_panels else ())
         ]
-
-    def hold(self, handle: Handle) -> None:
-        if isinstance(handle.key, int):
-            self._touched = handle.key
-
-    def place(self, handle: Handle, element: int, line: int) -> None:
-        if isinstance(handle.key, int):
-            self._move(handle.key, element, line)
 
     def pick(self, gesture: Gesture) -> None:
         if not self._is_on_panel(gesture.element, gesture.line):

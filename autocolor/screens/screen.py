@@ -6,7 +6,7 @@ when it is drawn, nor whether the mouse, the joystick unit or a key points.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import ClassVar, NamedTuple, TypeVar
 
 from autocolor.arrays import Bytes, Words
@@ -22,8 +22,8 @@ from autocolor.widgets.widget import NOWHERE, Place, Widget
 class Handle(NamedTuple):
     """A place on a screen that can be grabbed and put elsewhere.
 
-    By its `key` the screen recognizes the handle; `label` is for the message line. Its `sign` is a numeral on
-    the screen that can be grabbed in its place.
+    By its `key` the handle is recognized when it is made again; `label` is for the message line. Its `sign`
+    is a numeral on the screen that can be grabbed in its place.
     """
 
     key: object
@@ -31,6 +31,10 @@ class Handle(NamedTuple):
     line: int
     label: str
     sign: Area = NOWHERE
+    place: Callable[[int, int], object] = lambda element, line: None
+    """Put the handle at an element and a line: once after a pick, at each movement of a drag."""
+    hold: Callable[[], object] = lambda: None
+    """Note that the handle was picked or grabbed; `place` will move it."""
 
 
 class Sample(NamedTuple):
@@ -128,12 +132,6 @@ class Screen:
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         """The handles within reach of a place, nearest first, in the order in which they are taken."""
         return near
-
-    def hold(self, handle: Handle) -> None:
-        """Note the handle that was picked or grabbed; `place` will move it."""
-
-    def place(self, handle: Handle, element: int, line: int) -> None:
-        """Put a handle at a place: once after a pick, at each movement of a drag."""
 
     def release(self) -> None:
         """Let go of the handle."""

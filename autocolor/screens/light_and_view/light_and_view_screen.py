@@ -180,7 +180,15 @@ class LightAndViewScreen(Screen):
             for cross, area in items.numerals
             if cross.number <= len(scene.lights)
         }
-        return [handle._replace(sign=signs.get(movable_of(handle), NOWHERE)) for handle in handles]
+        return [
+            handle._replace(
+                sign=signs.get(movable, NOWHERE),
+                place=partial(self._place, movable),
+                hold=partial(self._hold, movable),
+            )
+            for handle in handles
+            for movable in [movable_of(handle)]
+        ]
 
     def hint(self, element: int, line: int) -> str:
         if PICTURE_AREA.has(element, line):
@@ -197,8 +205,7 @@ class LightAndViewScreen(Screen):
 
     # Gestures.
 
-    def hold(self, handle: Handle) -> None:
-        movable = movable_of(handle)
+    def _hold(self, movable: MovablePoint) -> None:
         self.choose(movable.light)
         self._moved = movable.point_in(self.session.scene, self.views)
         self._mark = mark_of(movable, side_of(movable), self.session.scene, self.views)
@@ -207,8 +214,8 @@ class LightAndViewScreen(Screen):
     def release(self) -> None:
         self._moved = None
 
-    def place(self, handle: Handle, element: int, line: int) -> None:
-        movable, session, views = movable_of(handle), self.session, self.views
+    def _place(self, movable: MovablePoint, element: int, line: int) -> None:
+        session, views = self.session, self.views
         side = side_of(movable)
         area = side.area
         if session.moving:

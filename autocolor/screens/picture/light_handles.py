@@ -7,6 +7,7 @@ The user drags a highlight or a rim to a pixel, and the light is placed so that 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -108,10 +109,6 @@ class LightHandles:
             handles[number] = near[other]
         return handles
 
-    def hold(self, handle: Handle) -> None:
-        """Choose the light of a handle."""
-        self.session.choose_light(_key_of(handle).light)
-
     def items(self, numbered: bool = False) -> Sequence[Item]:
         """The marks at the handles: dotted lines along the rims, and crosses at the highlights.
 
@@ -135,9 +132,15 @@ class LightHandles:
                         items.append(text(str(numbers[light.name]), *place, word, BLACK))
         return items
 
-    def place(self, handle: Handle, element: int, line: int) -> None:
+    def _driven(self, handle: Handle) -> Handle:
+        """A handle that chooses and moves its light."""
+        key = _key_of(handle)
+        hold = partial(self.session.choose_light, key.light)
+        return handle._replace(place=partial(self._place, key), hold=hold)
+
+    def _place(self, key: HandleKey, element: int, line: int) -> None:
         """Let the light follow a handle to a place. Raises UsageError on the background."""
-        key, session = _key_of(handle), self.session
+        session = self.session
         # The menu covers the places beside the area.
         element, line = min(element, self.area.right), min(line, self.area.bottom)
         scene, seen = session.scene, session.studio.seen_at(line, element)
@@ -177,7 +180,7 @@ class LightHandles:
             return []
         line, element = place
         handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
-        return [handle] if self.area.has(element, line) else []
+        return [self._driven(handle)] if self.area.has(element, line) else []
 
     def _search(self, light: str) -> tuple[int, int] | None:
         """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E)."""
@@ -207,7 +210,7 @@ class LightHandles:
             items: list[Item] = []
             for rim, pixels in rims(sight, light.name).items():
                 seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
-                handles += rim_handles(light.name, rim, seen)
+                handles += map(self._driven, rim_handles(light.name, rim, seen))
                 items += rim_items(seen, area)
             cached = self._rims = light, sight.points, area, handles, items
         return cached[3:]

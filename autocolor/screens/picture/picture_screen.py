@@ -6,17 +6,15 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
-from autocolor.errors import UsageError
-from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.file_actions import ask_to_leave, lying, seeming_up, stand_up
 from autocolor.screens.light_parameters import all_lights_on, light_alone
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.over_picture import OverPicture, camera_rows, stage_rows, surface_row, word_at
+from autocolor.screens.picture.over_picture import OverPicture, camera_rows, stage_rows, surface_row
 from autocolor.screens.picture.picture_edits import sides_of
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.widgets.items import SCREEN, Item
-from autocolor.widgets.menu import Section
+from autocolor.widgets.menu import WORK, Section
 from autocolor.widgets.widget import Button, Choice, Pair, Steps, Switch, Widget, titled
 
 TURN: Final = 5.0
@@ -42,7 +40,7 @@ class PictureScreen(OverPicture):
         """Whether the highlights are marked: the pointer rests on the object."""
 
     def items(self) -> Sequence[Item]:
-        marks = self._handles.items(numbered=True) if self._has_marks else ()
+        marks = self._marks.items(numbered=True) if self._has_marks else ()
         return [*super().items(), *marks]
 
     def hint(self, element: int, line: int) -> str:
@@ -60,20 +58,16 @@ class PictureScreen(OverPicture):
 
     def handles(self) -> Sequence[Handle]:
         # A click that explains a pixel picks no handle.
-        return () if self.session.explains else self._handles.handles()
+        return () if self.session.explains else self._marks.handles()
+
+    @property
+    def _marks(self) -> LightHandles:
+        """The marks and handles of the lights, as far as the menu does not cover them."""
+        self._handles.area = WORK if self.is_under_menu else SCREEN
+        return self._handles
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         return self._handles.preferred(near, element, line)
-
-    def hold(self, handle: Handle) -> None:
-        self._handles.hold(handle)
-
-    def place(self, handle: Handle, element: int, line: int) -> None:
-        if word_at(self.session, element, line) >= SCREENS.first:
-            raise UsageError(
-                "a highlight must be placed on the picture, not on what covers it; choose another pixel"
-            )
-        self._handles.place(handle, element, line)
 
     def rows(self) -> Sequence[Widget]:
         session, edits = self.session, self.edits

@@ -53,12 +53,12 @@ class Desk(Screen):
     def handles(self) -> Sequence[Handle]:
         x, y, _ = self.session.scene.view.eye
         return [
-            Handle("eye", round(200 + 10 * x), round(200 + 10 * y), "the eye"),
-            Handle("hidden", 508, 300, "?"),
-            Handle("low", 100, 455, "the low handle"),
+            Handle("eye", round(200 + 10 * x), round(200 + 10 * y), "the eye", place=self._place),
+            Handle("hidden", 508, 300, "?", place=self._place),
+            Handle("low", 100, 455, "the low handle", place=self._place),
         ]
 
-    def place(self, handle: Handle, element: int, line: int) -> None:
+    def _place(self, element: int, line: int) -> None:
         if element > 490:
             raise UsageError("an eye must be elsewhere")
         *_, z = self.session.scene.view.eye

@@ -142,11 +142,21 @@ def test_a_highlight_is_not_dragged_under_the_menu(hand: Hand) -> None:
     scene = hand.scene
     hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=12.0)))
     hand.press("tab")
-    hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 450))
-    assert hand.handle("highlight of key") == MIDDLE
-    assert hand.message == (
-        "a highlight must be placed on the picture, not on what covers it; choose another pixel"
-    )
+    hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 240))
+    assert hand.handle("highlight of key") == (WORK.right, 240)
+
+
+def test_a_highlight_is_dragged_over_the_marks_of_others(hand: Hand) -> None:
+    hand.move(*MIDDLE)
+    hand.viewer.on_tick()
+    start, end = hand.handle("highlight of key"), hand.handle("highlight of fill")
+    steps = [
+        (start[0] + (end[0] - start[0]) * n // 30, start[1] + (end[1] - start[1]) * n // 30)
+        for n in range(31)
+    ]
+    hand.drag(*steps)
+    assert not hand.viewer.session.news.is_warning
+    assert hand.handle("highlight of key") == end
 
 
 # The rims.
