@@ -33,8 +33,8 @@ def seeming_up(session: Session) -> str:
 
 
 def lying(session: Session) -> str:
-    """The hint of a mesh that seems to lie on its side, and the label of its row; else empty."""
-    return f"lying? up: {seeming_up(session)}" if seeming_up(session) else ""
+    """The hint of a mesh that seems to lie on its side; else empty."""
+    return "lies on its side? the menu turns it" if seeming_up(session) else ""
 
 
 def stand_up(session: Session) -> None:

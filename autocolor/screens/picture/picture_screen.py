@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
-from autocolor.screens.file_actions import ask_to_leave, lying, seeming_up, stand_up
+from autocolor.screens.file_actions import ask_to_leave, seeming_up, stand_up
 from autocolor.screens.light_parameters import all_lights_on, light_alone
 from autocolor.screens.picture.light_handles import LightHandles
 from autocolor.screens.picture.over_picture import OverPicture, camera_rows, stage_rows, surface_row
@@ -152,11 +152,9 @@ class PictureScreen(OverPicture):
 
     def _up_rows(self) -> list[Widget]:
         """The row of a mesh that seems to lie on its side."""
-        session = self.session
-        help = (
-            f"The mesh seems to lie on its side: read it again with {seeming_up(session)} up, or do nothing."
-        )
-        return [Button(lying(session), help, run=partial(stand_up, session))] if lying(session) else []
+        session, up = self.session, seeming_up(self.session)
+        help = f"The mesh seems to lie on its side: read it again with {up} up, or do nothing."
+        return [Button("on its side? turn", help, run=partial(stand_up, session))] if up else []
 
     def _light_rows(self) -> list[Widget]:
         session = self.session

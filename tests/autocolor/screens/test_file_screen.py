@@ -127,15 +127,15 @@ def test_a_mesh_that_lies_is_hinted_and_set_up_by_a_row_as_one_step(hand: Hand, 
     hand.pick("refresh")
     pick(hand, "spire.obj")
     lying = hand.scene
-    assert told(hand) == ("opened spire.obj; lying? up: y; undo goes back", False)
+    assert told(hand) == ("opened spire.obj; lies on its side? the menu turns it; undo goes back", False)
     hand.open_menu()
-    hand.pick("lying? up: y")
+    hand.pick("on its side? turn")
     assert told(hand) == ("read again with y up; undo goes back", False)
     assert np.ptp(hand.scene.mesh.coordinates, axis=0).tolist() == [4, 4, 5]
-    assert "lying? up: y" not in hand.labels
+    assert "on its side? turn" not in hand.labels
     undo(hand)
     assert hand.scene is lying
-    assert "lying? up: y" in hand.labels
+    assert "on its side? turn" in hand.labels
     undo(hand)
     assert hand.scene is before
     # A mesh that is read with an axis is not hinted.
