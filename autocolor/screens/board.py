@@ -20,7 +20,7 @@ from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
 from autocolor.screens.main_menu import last_rows, rows_of_menu
 from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items, offer_button
-from autocolor.screens.screen import Handle, Sample, Screen, surface_of
+from autocolor.screens.screen import Handle, Sample, Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
@@ -146,7 +146,7 @@ class Board:
             rows = self._menu_rows() if has_menu else ()
             letters = letter_panel(self.typing.key) if by_letters else ()
             over = (*letters, *(() if self.hides_panels else self.over()))
-            offer = offer_button(session.news.offer) if session.has_news else None
+            offer = offer_button(session.news.offer) if session.has_news and not self.typing.is_on else None
             self._layout = state, Layout(self.screen, rows, over, offer, self._opened, self._list_of)
         return self._layout[1]
 
@@ -541,8 +541,10 @@ class Board:
     def page(self) -> Page:
         """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
         screen = self.screen
-        screen.lit, screen.pointer = self._lit, self._pointer
+        screen.lit = self._lit
         layout, lit = self.layout, self._lit_widget()
+        is_free = layout.widget_at(*self._pointer) is None and not self.is_covered(*self._pointer)
+        screen.pointer = self._pointer if is_free else Place(-1, -1)
         items = list(screen.items())
         for widget in (*layout.beside, *reversed(layout.over)):
             items += widget.items(widget is lit and not widget.why_not)
@@ -590,12 +592,8 @@ class Board:
         if handle is not None:
             # A hint would cover a handle at the foot of the picture.
             return handle.line < MESSAGE.top
-        studio, screen = self.session.studio, self.screen
-        lines, elements = studio.words.shape
-        speaks = screen.shows_picture and screen.shows_scene and not self.hides_panels
-        if not speaks or line >= lines or element >= elements:
-            return False
-        return bool(surface_of(studio, int(studio.words[line, element])))
+        speaks = self.screen.shows_scene and not self.hides_panels
+        return speaks and bool(self.screen.surface_at(element, line))
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer

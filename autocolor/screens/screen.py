@@ -79,7 +79,7 @@ class Screen:
         self.lit = ""
         """The key of the widget under the pointer; empty if there is none."""
         self.pointer = Place(-1, -1)
-        """The place of the pointer when the page was shown last."""
+        """The place of the pointer on the last page; negative where something covers the screen."""
 
     # How it looks.
 
@@ -126,6 +126,14 @@ class Screen:
     def take_color(self, color: Color | str, element: int, line: int) -> None:
         """Take a pasted or sampled color, with the pointer at a place. Raises UsageError if it cannot."""
         raise UsageError("this screen takes no color; turn to color mixing")
+
+    def surface_at(self, element: int, line: int) -> str:
+        """The name of the surface that the picture has at a place; no word is read from the display."""
+        studio = self.session.studio
+        lines, elements = studio.words.shape
+        if not self.shows_picture or not (0 <= line < lines and 0 <= element < elements):
+            return ""
+        return surface_of(studio, int(studio.words[line, element]))
 
     # Gestures and keys.
 

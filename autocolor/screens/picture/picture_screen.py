@@ -51,8 +51,7 @@ class PictureScreen(OverPicture):
         return f"{', '.join(pointed.names)}: {does}"
 
     def idle(self) -> bool:
-        had_marks = self._has_marks
-        is_on_object = min(self.pointer) >= 0 and self._pointed(*self.pointer) is not None
+        had_marks, is_on_object = self._has_marks, bool(self.surface_at(*self.pointer))
         self._has_marks = is_on_object and self.has_panels and not self.session.explains
         return self._has_marks != had_marks
 

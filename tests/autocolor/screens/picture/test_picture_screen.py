@@ -154,6 +154,9 @@ def test_highlights_are_marked_while_the_pointer_rests_on_the_object(tmp_path: P
     hand.viewer.on_tick()
     assert len(hand.viewer.board.page().items) > len(bare)
     assert hand.hint == "ball, paint: drag turns, click chooses, Shift explains"
+    received = hand.display.words_received
+    hand.viewer.on_tick()
+    assert hand.display.words_received == received
     hand.move(20, 20)
     hand.viewer.on_tick()
     hand.viewer.tell("")
