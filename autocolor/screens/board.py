@@ -139,8 +139,7 @@ class Board:
         session, has_menu = self.session, self.has_menu
         by_letters = self.typing.is_by_letters
         shown = has_menu, self.hides_panels, self._menu_page, self._opened, self._list_page, by_letters
-        folds = self._folds.get(session.screen, {})
-        state = session.screen, session.moving, shown, tuple(folds.items()), self.over
+        state = session.screen, session.moving, shown, self.over
         if self._layout is None or self._layout[0] != state:
             self.screen.is_under_menu, self.screen.has_panels = has_menu, not self.hides_panels
             rows = self._menu_rows() if has_menu else ()
@@ -172,6 +171,7 @@ class Board:
         folds.update(self._sections)
         folds.pop(section, None)
         folds[section] = is_open
+        self.forget()
 
     def _use(self, widget: Widget) -> None:
         """Note that the section of a widget was used last, so that the section stays open if it grows."""

@@ -386,6 +386,8 @@ class Viewer:
         self.board.clear()
         self.session.tell("")
         self._update()
+        # Without a pointer, no highlights are marked.
+        self.board.screen.idle()
         self._sheet.show(self.board.page()._replace(items=self.board.screen.items()))
         self._unit.hide()
 

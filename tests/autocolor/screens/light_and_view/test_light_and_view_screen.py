@@ -466,7 +466,9 @@ def test_lights_and_aims_that_are_close_together_are_told_apart_by_numerals(coup
         left, top, right, bottom = handle.sign
         for place in ((left, top), (right, bottom), ((left + right) // 2, (top + bottom) // 2)):
             coupe.move(*place)
-            assert coupe.viewer.board.handle_at(*place) == handle
+            found = coupe.viewer.board.handle_at(*place)
+            assert found is not None
+            assert found.key == handle.key
             # The second cursor marks the point itself.
             assert coupe.viewer.board.mark == (handle.element, handle.line)
             assert coupe.viewer.board.messages[0].text.startswith(handle.label)
