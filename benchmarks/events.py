@@ -111,7 +111,7 @@ class Bench:
             if widget.label == label:
                 left, top, right, bottom = widget.area
                 return round(left + share[0] * (right - left)), round(top + share[1] * (bottom - top))
-        for handle in self.viewer.board.screen.handles():
+        for handle in self.viewer.board.content.handles:
             if handle.label.startswith(label):
                 return handle.element, handle.line
         raise AbsentError(f"nothing is called {label!r} on the screen {self.viewer.page!r}")
@@ -219,14 +219,14 @@ def background(bench: Bench) -> tuple[int, int]:
 
 def legend_of(bench: Bench) -> tuple[int, int]:
     """A place on the legend of a scalar, which is in the upper left corner of the picture."""
-    session, screen = bench.viewer.session, bench.viewer.board.screen
+    session, board = bench.viewer.session, bench.viewer.board
     session.edit(session.scene.with_scalar(name="z", legend_place=(0.0, 0.0)))
     bench.viewer.tell("")
     return next(
         (element, line)
         for line in range(0, 200, 4)
         for element in range(0, 200, 4)
-        if screen.hint(element, line).startswith("the legend")
+        if board.content.hint(element, line).startswith("the legend")
     )
 
 

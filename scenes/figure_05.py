@@ -13,7 +13,7 @@ def main() -> None:
         click_at(viewer, PICTURE_AREA.right, PICTURE_AREA.bottom)
         # The message line tells the place of the first light.
         name = viewer.studio.scene.lights[0].name
-        light = next(each for each in viewer.board.screen.handles() if each.label.startswith(f"{name}: x"))
+        light = next(each for each in viewer.board.content.handles if each.label.startswith(f"{name}: x"))
         point_at(viewer, light.element, light.line)
         sheet.add(display.field(), "Light and View Selection")
 

@@ -97,7 +97,7 @@ def click_at(viewer: Viewer, element: int, line: int) -> None:
     """Press ENTER at a pixel of the display, and wait until the page is complete."""
     point_at(viewer, element, line).press_enter()
     viewer.poll()
-    while viewer.board.screen.idle():
+    while viewer.board.content.idle():
         viewer.on_tick()
 
 

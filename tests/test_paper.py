@@ -496,7 +496,7 @@ def place_of_lamp(hand: PaintingHand, view: str) -> tuple[int, int]:
     """Where the position of the lamp is marked in one of the three views: element and line."""
     (place,) = (
         (handle.element, handle.line)
-        for handle in hand.viewer.board.screen.handles()
+        for handle in hand.viewer.board.content.handles
         if handle.label.startswith("lamp") and f"'{view}'" in repr(handle.key)
     )
     return place

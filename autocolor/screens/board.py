@@ -20,7 +20,7 @@ from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
 from autocolor.screens.main_menu import last_rows, rows_of_menu
 from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items, offer_button
-from autocolor.screens.screen import Handle, Sample, Screen
+from autocolor.screens.screen import Content, Handle, Sample, Screen, Surroundings, surface_at
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
@@ -139,24 +139,37 @@ class Board:
         session, has_menu = self.session, self.has_menu
         by_letters = self.typing.is_by_letters
         shown = has_menu, self.hides_panels, self._menu_page, self._opened, self._list_page, by_letters
-        state = session.screen, session.moving, shown, self.over
+        state = session.screen, session.moving, session.scene, shown, self.over
         if self._layout is None or self._layout[0] != state:
-            self.screen.is_under_menu, self.screen.has_panels = has_menu, not self.hides_panels
-            rows = self._menu_rows() if has_menu else ()
             letters = letter_panel(self.typing.key) if by_letters else ()
             over = (*letters, *(() if self.hides_panels else self.over()))
+            content = self.screen.build(self._surroundings(has_menu, over))
+            rows = self._menu_rows(content) if has_menu else ()
             offer = offer_button(session.news.offer) if session.has_news and not self.typing.is_on else None
-            self._layout = state, Layout(self.screen, rows, over, offer, self._opened, self._list_of)
+            self._layout = state, Layout(content, rows, over, offer, self._opened, self._list_of)
         return self._layout[1]
+
+    @property
+    def content(self) -> Content:
+        """The content of the screen that is shown."""
+        return self.layout.content
+
+    def _surroundings(self, has_menu: bool, over: Sequence[Widget]) -> Surroundings:
+        """The menu, the panels and the pointer, for the screen that is shown."""
+        message = (item.area for item in self._message)
+        above = (*([MENU] if has_menu else []), *(widget.area for widget in over), *message)
+        is_covered = any(area.has(*self._pointer) for area in above)
+        pointer = Place(-1, -1) if is_covered else self._pointer
+        return Surroundings(has_menu, not self.hides_panels, self._lit, pointer)
 
     def forget(self) -> None:
         """Make the layout anew when it is needed, because the scene or the screen may have changed."""
         self._layout = None
 
-    def _menu_rows(self) -> list[Widget]:
+    def _menu_rows(self, content: Content) -> list[Widget]:
         """The rows of this page of the menu, laid out."""
-        rows = rows_of_menu(self.session, self.screen, self.screens.values())
-        last = [*last_rows(self.session, self.screen), *self._hiding_rows()]
+        rows = rows_of_menu(self.session, self.screen, content, self.screens.values())
+        last = [*last_rows(self.session, self.screen), *self._hiding_rows(content)]
         folds = self._folds.get(self.session.screen, {})
         rows = folded(rows, folds, self._fold, MENU.height - lines_of(last))
         self._sections = {row.label: row.is_open for row in rows if isinstance(row, Section)}
@@ -213,12 +226,12 @@ class Board:
         self.close()
         self.session.tell(HIDDEN if self.hides_panels else "the panels are shown")
 
-    def _hiding_rows(self) -> list[Widget]:
+    def _hiding_rows(self, content: Content) -> list[Widget]:
         """The row that hides the panels over a picture, or shows them again."""
         if self.hides_panels:
             return [Button("show panels", "Show the menu and all panels again.", run=self.switch_panels)]
         screen = self.screen
-        if not screen.shows_picture or not (screen.has_menu or screen.widgets()):
+        if not screen.shows_picture or not (screen.has_menu or content.widgets):
             return []
         help = "Show the whole picture, without menu and panels; the right edge brings this row back."
         return [Button("hide panels", help, run=self.switch_panels)]
@@ -240,7 +253,7 @@ class Board:
         """The nearest handle within reach of a place; None if something covers the handle or the place."""
         if min(element, line) < 0 or self.is_covered(element, line):
             return None
-        near = self.screen.preferred(handles_near(self.layout.handles, element, line), element, line)
+        near = self.content.preferred(handles_near(self.content.handles, element, line), element, line)
         return next((each for each in near if not self.is_covered(each.element, each.line)), None)
 
     def turn(self) -> bool:
@@ -268,7 +281,7 @@ class Board:
         """The pixel of the picture under the pointer; None where something covers the picture."""
         element, line = self._pointer
         is_free = self.layout.widget_at(element, line) is None and not self.is_covered(element, line)
-        return self.screen.sample(element, line) if is_free else None
+        return self.content.sample(element, line) if is_free else None
 
     @property
     def text_to_copy(self) -> str:
@@ -278,7 +291,7 @@ class Board:
             return self.typing.text
         if isinstance(lit, Entry):
             return lit.value
-        color = self.screen.color_at(*self._pointer)
+        color = self.content.color_at(*self._pointer)
         return "" if color is None else in_digits(color)
 
     def paste(self, text: str) -> None:
@@ -298,7 +311,7 @@ class Board:
 
     def take_color(self, color: Color | str) -> None:
         """Let the screen take a color, with the pointer where it is."""
-        self.screen.take_color(color, *self._pointer)
+        self.content.take_color(color, *self._pointer)
 
     def take(self, gesture: Gesture) -> None:
         """Handle a gesture. Over another thing, a message gives way to the hint when it had its time."""
@@ -325,8 +338,10 @@ class Board:
         self.typing.end()
 
     def _let_go(self) -> None:
+        for each in (self.held, self._grabbed):
+            if isinstance(each, Handle):
+                each.let_go()
         self.held = self._grabbed = None
-        self.screens[self._shown].release()
 
     def _light(self, widget: Widget | None) -> None:
         self._lit, self._lit_area = ("", NOWHERE) if widget is None else (widget.key, widget.area)
@@ -378,7 +393,7 @@ class Board:
             # Modifiers are for the screen.
             handle = None if gesture.shift else self.handle_at(element, line)
             if handle is None:
-                self.screen.pick(gesture)
+                self.content.pick(gesture)
                 return
             self.held = handle
             handle.hold()
@@ -447,7 +462,7 @@ class Board:
             element, line = self._from_handle
             self._grabbed.place(gesture.element - element, gesture.line - line)
         elif self._grabbed is not None:
-            self._grabbed.drag(self._start, last, gesture)
+            self.content.drag(self._start, last, gesture)
 
     def _drop(self, gesture: Gesture) -> None:
         self._let_go()
@@ -459,7 +474,7 @@ class Board:
                 self._use(widget)
                 widget.nudge(gesture.steps)
         elif not self.is_covered(*self._pointer):
-            self.screen.wheel(gesture)
+            self.content.wheel(gesture)
 
     # Keys.
 
@@ -492,7 +507,7 @@ class Board:
         elif self.hides_panels:
             self.switch_panels()
         else:
-            return self.screen.escape()
+            return self.content.escape()
         return True
 
     def key(self, name: str, typed: str) -> bool:
@@ -531,7 +546,7 @@ class Board:
         handle = self.held
         if handle is not None:
             key = handle.key
-            handle = next((each for each in self.layout.handles if each.key == key), handle)
+            handle = next((each for each in self.content.handles if each.key == key), handle)
         elif self._grabbed is None and self.layout.widget_at(*self._pointer) is None:
             handle = self.handle_at(*self._pointer)
         place = None if handle is None else Place(handle.element, handle.line)
@@ -540,13 +555,9 @@ class Board:
 
     def page(self) -> Page:
         """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
-        screen = self.screen
-        screen.lit = self._lit
-        layout, lit = self.layout, self._lit_widget()
-        is_free = layout.widget_at(*self._pointer) is None and not self.is_covered(*self._pointer)
-        screen.pointer = self._pointer if is_free else Place(-1, -1)
-        items = list(screen.items())
-        for widget in (*layout.beside, *reversed(layout.over)):
+        layout, content, lit = self.layout, self.content, self._lit_widget()
+        items = list(content.items)
+        for widget in (*content.widgets, *reversed(layout.over)):
             items += widget.items(widget is lit and not widget.why_not)
         if layout.rows:
             items += menu_items(layout.rows, lit)
@@ -562,7 +573,7 @@ class Board:
         items += self._message
         if layout.offer is not None:
             items += layout.offer.items(layout.offer is lit)
-        return Page(screen.base(), items, with_loads(self.session.studio.entries, screen.loads()))
+        return Page(content.base, items, with_loads(self.session.studio.entries, content.loads))
 
     @property
     def messages(self) -> Sequence[MessagePart]:
@@ -592,8 +603,8 @@ class Board:
         if handle is not None:
             # A hint would cover a handle at the foot of the picture.
             return handle.line < MESSAGE.top
-        speaks = self.screen.shows_scene and not self.hides_panels
-        return speaks and bool(self.screen.surface_at(element, line))
+        speaks = self.screen.shows_picture and self.screen.shows_scene and not self.hides_panels
+        return speaks and bool(surface_at(self.session.studio, element, line))
 
     def _hint(self) -> str:
         lit, (element, line) = self._lit_widget(), self._pointer
@@ -608,7 +619,7 @@ class Board:
             return self.screen.help
         handle = self.handle_at(element, line)
         if handle is None:
-            return self.screen.hint(element, line)
+            return self.content.hint(element, line) or self.screen.help
         return f"{handle.label}: drag it, or click here and where it goes"
 
 

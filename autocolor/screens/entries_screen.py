@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Final
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from autocolor.arrays import Words
 from autocolor.mapping.ranges import BACKDROP, BACKGROUND, SCREENS, WORDS, LevelRange
-from autocolor.screens.screen import Screen
+from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, YELLOW, Item, fitted, text
 
 SIDE: Final = 32
@@ -66,11 +66,9 @@ class EntriesScreen(Screen):
     shows_scene = False
     is_in_menu = False
 
-    def base(self) -> Words:
-        return cell_words(tuple(self._ranges.values()))
-
-    def items(self) -> Sequence[Item]:
-        return entries_items(self._ranges)
+    def build(self, around: Surroundings) -> Content:
+        ranges = self._ranges
+        return Content(base=cell_words(tuple(ranges.values())), items=entries_items(ranges))
 
     @property
     def _ranges(self) -> Mapping[str, LevelRange]:

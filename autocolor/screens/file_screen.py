@@ -16,7 +16,6 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from autocolor.arrays import Bytes
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.meshes.repair import UPS
 from autocolor.files.opening import FOLDER, Openable, kind_of, openables_of
@@ -37,7 +36,7 @@ from autocolor.screens.file_actions import (
     save_image,
     save_rig,
 )
-from autocolor.screens.screen import Screen
+from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
 from autocolor.sending import configuration_of
 from autocolor.widgets.items import (
@@ -174,7 +173,18 @@ class FileScreen(Screen):
 
     # Items and widgets.
 
-    def items(self) -> Sequence[Item]:
+    def build(self, around: Surroundings) -> Content:
+        pointed = self._picture_of(around.lit)
+        shown = self._thumbnail_of(pointed)
+        return Content(
+            items=self._items(shown),
+            loads=[] if shown is None else [(FIRST_BORROWED, shown[1].colors)],
+            rows=self._rows,
+            widgets=self._widgets(),
+            idle=partial(self._idle, pointed),
+        )
+
+    def _items(self, shown: tuple[str, SmallPicture] | None) -> Sequence[Item]:
         down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
         folder = short_name(self._shown_path(self.session.folder), ACROSS)
         items = [
@@ -189,7 +199,7 @@ class FileScreen(Screen):
             )
         if not self._recent:
             items.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, LIGHT_GRAY))
-        if (shown := self._shown_thumbnail) is not None:
+        if shown is not None:
             caption, small = shown
             lines, elements = small.full.shape[:2]
             left, top = THUMBNAIL.left + FRAME, THUMBNAIL.bottom + 1 - FRAME - lines
@@ -201,26 +211,20 @@ class FileScreen(Screen):
             ]
         return items
 
-    def loads(self) -> Sequence[tuple[int, Bytes]]:
-        shown = self._shown_thumbnail
-        return [] if shown is None else [(FIRST_BORROWED, shown[1].colors)]
-
-    @property
-    def _shown_thumbnail(self) -> tuple[str, SmallPicture] | None:
+    def _thumbnail_of(self, pointed: Path | None) -> tuple[str, SmallPicture] | None:
         """The caption and the small picture of the picture file under the pointer, if it was read."""
         if self._thumbnail is None:
             return None
         path, caption, small = self._thumbnail
-        return None if small is None or path != self._pointed_picture else (caption, small)
+        return None if small is None or path != pointed else (caption, small)
 
-    @property
-    def _pointed_picture(self) -> Path | None:
-        """The picture file under the pointer."""
-        pointed = self.lit.removeprefix(RECENT)
+    def _picture_of(self, lit: str) -> Path | None:
+        """The picture file of a row, by the key of the row."""
+        pointed = lit.removeprefix(RECENT)
         pictures = (path for path, kind in (*self._files, *self._recent) if kind == PICTURE_KIND)
         return next((path for path in pictures if str(path) == pointed), None)
 
-    def idle(self) -> bool:
+    def _idle(self, path: Path | None) -> bool:
         """Export an image, or read the picture file under the pointer."""
         if self._ticks_to_export:
             # A window shows the message after the first tick.
@@ -229,7 +233,6 @@ class FileScreen(Screen):
                 self._export()
                 return True
             return False
-        path = self._pointed_picture
         if path is None or (self._thumbnail is not None and self._thumbnail[0] == path):
             return False
         self._thumbnail = path, *self._read_thumbnail(path)
@@ -254,7 +257,7 @@ class FileScreen(Screen):
         folder = self.session.folder
         return folder.parent != folder and may_reach(self.session, folder.parent)
 
-    def widgets(self) -> Sequence[Widget]:
+    def _widgets(self) -> Sequence[Widget]:
         rows: list[Widget] = []
         if self._has_way_up:
             above = Openable(self.session.folder.parent, FOLDER)
@@ -284,7 +287,7 @@ class FileScreen(Screen):
         shown = shown or short_path(path, bool(key))
         return FileRow(f"{key}{path}", help, run=run, value=RIG if rig else kind, shown=shown, date=date)
 
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         session = self.session
         changed = "changed" if session.studio.is_changed else ""
         scale = f"{session.mesh_scale:g}"

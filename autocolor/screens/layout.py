@@ -8,7 +8,7 @@ from functools import cached_property
 from operator import itemgetter
 from typing import Final
 
-from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.screen import Content, Handle
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import MENU, WIDE_BAR, NameList
@@ -22,7 +22,7 @@ REACH: Final = 8
 class Layout:
     """Everything that can be pointed at on a screen at one moment, computed on demand."""
 
-    screen: Screen
+    content: Content
     rows: Sequence[Widget] = ()
     """The rows of the menu with their areas; none while the menu is away."""
     over: Sequence[Widget] = ()
@@ -54,23 +54,12 @@ class Layout:
         return self.list_names(row) if isinstance(row, Choice) and self.list_names is not None else None
 
     @cached_property
-    def beside(self) -> Sequence[Widget]:
-        """The widgets of the screen beside the menu."""
-        is_hidden = self.screen.shows_picture and not self.screen.has_panels
-        return () if is_hidden else self.screen.widgets()
-
-    @cached_property
-    def handles(self) -> Sequence[Handle]:
-        """The handles of the screen, including covered handles."""
-        return self.screen.handles()
-
-    @cached_property
     def widgets(self) -> Sequence[Widget]:
         """Everything that can be pointed at, the topmost first."""
         wide = () if self.wide is None else (self.wide,)
         listed = () if self.listed is None else self.listed.rows
         offer = () if self.offer is None else (self.offer,)
-        return (*offer, *listed, *wide, *self.over, *self.rows, *self.beside)
+        return (*offer, *listed, *wide, *self.over, *self.rows, *self.content.widgets)
 
     @cached_property
     def by_key(self) -> Mapping[str, Sequence[Widget]]:

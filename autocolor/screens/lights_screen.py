@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
 from typing import Final
@@ -25,7 +25,7 @@ from autocolor.screens.light_parameters import KIND, all_lights_on, light_alone,
 from autocolor.screens.naming import name_light
 from autocolor.screens.picture.light_handles import LightHandles, highlight_items
 from autocolor.screens.picture.over_picture import OverPicture, exposure_row
-from autocolor.screens.screen import Handle
+from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import Session
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.bars import Bar
@@ -95,23 +95,21 @@ class LightsScreen(OverPicture):
         self._picking = PlanePicking(session, WORK)
         self._list = LightList(session)
 
-    def items(self) -> Sequence[Item]:
-        return [*super().items(), *(self._picking if self._picking.is_on else self._marks).items()]
-
-    @property
-    def _marks(self) -> LightHandles:
-        """The marks and handles of the lights in the picture, as far as the menu does not cover it."""
-        self._handles.area = WORK if self.is_under_menu else SCREEN
-        return self._handles
-
-    def widgets(self) -> Sequence[Widget]:
-        return self._list.widgets()
-
-    def handles(self) -> Sequence[Handle]:
+    def build(self, around: Surroundings) -> Content:
+        content, marks, picking = super().build(around), self._handles, self._picking
+        marks.area = WORK if around.has_menu else SCREEN
         # The list covers handles, also where they are within reach of a place beside it.
-        covered = self._list.area if self.has_panels else NOWHERE
-        handles = () if self._picking.is_on else self._marks.handles()
-        return [each for each in handles if not covered.has(each.element, each.line)]
+        covered = self._list.area if around.has_panels else NOWHERE
+        handles = () if picking.is_on else marks.handles()
+        return replace(
+            content,
+            items=[*content.items, *(picking if picking.is_on else marks).items()],
+            rows=self._rows,
+            widgets=self._list.widgets() if around.has_panels else (),
+            handles=[each for each in handles if not covered.has(each.element, each.line)],
+            preferred=marks.preferred,
+            escape=picking.end,
+        )
 
     def pick(self, gesture: Gesture) -> None:
         if self._picking.is_on:
@@ -119,16 +117,10 @@ class LightsScreen(OverPicture):
         else:
             super().pick(gesture)
 
-    def escape(self) -> bool:
-        return self._picking.end()
-
     def leave(self) -> None:
         self._picking.end()
 
-    def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
-        return self._handles.preferred(near, element, line)
-
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         light = self.session.chosen_light
         if light is None:
             return [

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Final
 
-from autocolor.screens.screen import Screen
+from autocolor.screens.screen import Content, Screen
 from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.screens.steps import redo, switch_comparing, switch_split, undo
 from autocolor.widgets.items import CHARACTER, GRAY, NIGHT, SLATE, WHITE, Item, filled, text
@@ -55,7 +55,9 @@ class UndoRow(Steps):
         return None
 
 
-def rows_of_menu(session: Session, screen: Screen, screens: Iterable[Screen]) -> list[Widget]:
+def rows_of_menu(
+    session: Session, screen: Screen, content: Content, screens: Iterable[Screen]
+) -> list[Widget]:
     """The rows of a screen's menu: on the picture the ways to other screens, elsewhere the way back."""
     if screen.name == PICTURE:
         ways: list[Widget] = [
@@ -63,9 +65,9 @@ def rows_of_menu(session: Session, screen: Screen, screens: Iterable[Screen]) ->
             for each in screens
             if each.is_in_menu and each is not screen
         ]
-        return [*ways, Gap("ways"), *screen.rows()]
+        return [*ways, Gap("ways"), *content.rows()]
     back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
-    return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows()]
+    return [Heading(screen.title.upper()), back, Gap("ways"), *content.rows()]
 
 
 def last_rows(session: Session, screen: Screen) -> list[Widget]:

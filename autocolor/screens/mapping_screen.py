@@ -7,6 +7,7 @@ mappings can be tried. No mapping renders the picture again.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Any, Final, NamedTuple
 
@@ -27,7 +28,7 @@ from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
-from autocolor.screens.screen import Handle
+from autocolor.screens.screen import Content, Handle, Surroundings
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.items import (
@@ -67,12 +68,22 @@ class MappingScreen(OverPicture):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
+        self._has_panel = True
+        """Whether the panel of the curve is shown."""
         self._touched: int | None = None
         """The number of the point that was touched last."""
 
+    def build(self, around: Surroundings) -> Content:
+        content = super().build(around)
+        self._has_panel = around.has_panels
+        if not around.has_panels:
+            return replace(content, rows=self._rows)
+        items = [*content.items, *panel_items(self._curve())]
+        return replace(content, items=items, rows=self._rows, handles=self._handles())
+
     # The menu.
 
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
         others = ("name", "view", "scalar", "front", "stage", "backdrop", *OF_DISPLAY)
         return [
@@ -118,10 +129,7 @@ class MappingScreen(OverPicture):
 
     # The curve.
 
-    def items(self) -> Sequence[Item]:
-        return [*super().items(), *(panel_items(self._curve()) if self.has_panels else ())]
-
-    def handles(self) -> Sequence[Handle]:
+    def _handles(self) -> Sequence[Handle]:
         return [
             Handle(
                 number,
@@ -130,7 +138,7 @@ class MappingScreen(OverPicture):
                 place=partial(self._move, number),
                 hold=partial(setattr, self, "_touched", number),
             )
-            for number, (x, y) in enumerate(self._points() if self.has_panels else ())
+            for number, (x, y) in enumerate(self._points())
         ]
 
     def pick(self, gesture: Gesture) -> None:
@@ -159,7 +167,7 @@ class MappingScreen(OverPicture):
         return f"intensity {x:.2f}, level {y:.2f}: a click or a drag makes a point here"
 
     def _is_on_panel(self, element: int, line: int) -> bool:
-        return self.has_panels and PANEL.has(element, line)
+        return self._has_panel and PANEL.has(element, line)
 
     def _points(self) -> CurvePoints:
         """The points of the curve; none if the curve has a name."""

@@ -7,6 +7,7 @@ set by pointing, and only another scalar computes values again; another color sc
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -18,6 +19,7 @@ from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scalar import Scalar
 from autocolor.screens.picture.over_picture import OverPicture, surface_row
+from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.rows import rows_of
@@ -45,7 +47,10 @@ class ScalarScreen(OverPicture):
     title = "scalar"
     help = "Surfaces in the colors of a scalar; click in the picture: its value there"
 
-    def rows(self) -> Sequence[Widget]:
+    def build(self, around: Surroundings) -> Content:
+        return replace(super().build(around), rows=self._rows)
+
+    def _rows(self) -> Sequence[Widget]:
         scene, scalar = self.session.scene, self.session.scene.scalar
         choice = Choice(
             "scalar",

@@ -1,12 +1,13 @@
 """Screen: the interface of an interactive screen of the paper. Screens know the session, but not each other.
 
-A screen says how it looks now, which widgets and handles it has, and what a gesture does. It does not know
-when it is drawn, nor whether the mouse, the joystick unit or a key points.
+A screen builds its content: how it looks now, its widgets and handles, and what gestures do there. It does
+not know when it is drawn, nor whether the mouse, the joystick unit or a key points.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, TypeVar
 
 from autocolor.arrays import Bytes, Words
@@ -35,6 +36,8 @@ class Handle(NamedTuple):
     """Put the handle at an element and a line: once after a pick, at each movement of a drag."""
     hold: Callable[[], object] = lambda: None
     """Note that the handle was picked or grabbed; `place` will move it."""
+    let_go: Callable[[], object] = lambda: None
+    """Note that the handle is no longer picked or grabbed."""
 
 
 class Sample(NamedTuple):
@@ -52,6 +55,74 @@ def surface_of(studio: Studio, word: int) -> str:
     """The name of the surface that owns a word; empty for the background and the words of screens."""
     ranges = studio.level_ranges.items()
     return next((name for name, levels in ranges if levels.first <= word <= levels.last), "")
+
+
+def surface_at(studio: Studio, element: int, line: int) -> str:
+    """The name of the surface at a place of the picture; no word is read from the display."""
+    lines, elements = studio.words.shape
+    if not (0 <= line < lines and 0 <= element < elements):
+        return ""
+    return surface_of(studio, int(studio.words[line, element]))
+
+
+class Surroundings(NamedTuple):
+    """The things around a screen when its content is built."""
+
+    has_menu: bool = False
+    """Whether the menu covers its right part."""
+    has_panels: bool = True
+    """Whether its panels are shown; else the user hides them to see the whole picture."""
+    lit: str = ""
+    """The key of the widget under the pointer; empty if there is none."""
+    pointer: Place = Place(-1, -1)
+    """The place of the pointer; negative where the menu or a message covers the screen."""
+
+
+def take_no_color(color: Color | str, element: int, line: int) -> None:
+    """Refuse a color, on a screen that takes none."""
+    raise UsageError("this screen takes no color; turn to color mixing")
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a screen shows at one moment, and what gestures and keys do there."""
+
+    base: Words | int = NIGHT
+    """The base below all items: one word, or the words of a picture, the same array until it changes."""
+    items: Sequence[Item] = ()
+    """The items over the base, from the lowest to the highest; the widgets stand over them."""
+    loads: Sequence[tuple[int, Bytes]] = ()
+    """The runs of entries that it borrows: the first entry, and the colors, (n, 3)."""
+    rows: Callable[[], Sequence[Widget]] = tuple
+    """Gives the rows of its menu, when the menu is shown."""
+    widgets: Sequence[Widget] = ()
+    """The widgets beside the menu, each with its area."""
+    handles: Sequence[Handle] = ()
+    """The places that can be grabbed."""
+
+    hint: Callable[[int, int], str] = lambda element, line: ""
+    """Gives the text of the message line for a place without widget and handle; empty for the help."""
+    sample: Callable[[int, int], Sample | None] = lambda element, line: None
+    """Gives the pixel of the picture that is seen at a place; None where no picture is seen."""
+    color_at: Callable[[int, int], Color | None] = lambda element, line: None
+    """Gives the color to copy at a place; None if there is none."""
+    take_color: Callable[[Color | str, int, int], object] = take_no_color
+    """Takes a pasted or sampled color, with the pointer at a place. Raises UsageError if it cannot."""
+    preferred: Callable[[Sequence[Handle], int, int], Sequence[Handle]] = lambda near, element, line: near
+    """Gives the handles within reach of a place, nearest first, in the order in which they are taken."""
+
+    pick: Callable[[Gesture], object] = lambda gesture: None
+    """Handles a click or ENTER at a place without widget and handle."""
+    drag: Callable[[Gesture, Gesture, Gesture], object] = lambda start, last, now: None
+    """Follows a drag that began at a place without widget and handle."""
+    wheel: Callable[[Gesture], object] = lambda gesture: None
+    """Handles a turn of the wheel at a place without widget."""
+    key: Callable[[str, str], bool] = lambda name, typed: False
+    """Handles a key, by its name and the typed letter; returns False if it does nothing here."""
+    escape: Callable[[], bool] = lambda: False
+    """Cancels an action that was begun; returns False if there is none, and the screen is left."""
+    idle: Callable[[], bool] = lambda: False
+    """Does a part of the work that waits until nothing moves; returns whether the screen changed."""
 
 
 class Screen:
@@ -72,98 +143,10 @@ class Screen:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self.is_under_menu = self.has_menu
-        """Whether the menu covers its right part."""
-        self.has_panels = True
-        """Whether its panels are shown; else the user hides them to see the whole picture."""
-        self.lit = ""
-        """The key of the widget under the pointer; empty if there is none."""
-        self.pointer = Place(-1, -1)
-        """The place of the pointer on the last page; negative where something covers the screen."""
 
-    # How it looks.
-
-    def base(self) -> Words | int:
-        """The base below all items: one word, or the words of a picture, the same array until it changes."""
-        return NIGHT
-
-    def items(self) -> Sequence[Item]:
-        """The items over the base, from the lowest to the highest; the widgets stand over them."""
-        return ()
-
-    def loads(self) -> Sequence[tuple[int, Bytes]]:
-        """The runs of entries that it borrows: the first entry, and the colors, (n, 3)."""
-        return ()
-
-    # Widgets and handles.
-
-    def rows(self) -> Sequence[Widget]:
-        """The rows of its menu."""
-        return ()
-
-    def widgets(self) -> Sequence[Widget]:
-        """The widgets beside the menu, each with its area."""
-        return ()
-
-    def handles(self) -> Sequence[Handle]:
-        """The places that can be grabbed."""
-        return ()
-
-    def hint(self, element: int, line: int) -> str:
-        """The text of the message line for a place without widget and handle."""
-        return self.help
-
-    # Colors.
-
-    def sample(self, element: int, line: int) -> Sample | None:
-        """The pixel of the picture that is seen at a place; None where no picture is seen."""
-        return None
-
-    def color_at(self, element: int, line: int) -> Color | None:
-        """The color to copy at a place; None if there is none."""
-        return None
-
-    def take_color(self, color: Color | str, element: int, line: int) -> None:
-        """Take a pasted or sampled color, with the pointer at a place. Raises UsageError if it cannot."""
-        raise UsageError("this screen takes no color; turn to color mixing")
-
-    def surface_at(self, element: int, line: int) -> str:
-        """The name of the surface that the picture has at a place; no word is read from the display."""
-        studio = self.session.studio
-        lines, elements = studio.words.shape
-        if not self.shows_picture or not (0 <= line < lines and 0 <= element < elements):
-            return ""
-        return surface_of(studio, int(studio.words[line, element]))
-
-    # Gestures and keys.
-
-    def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
-        """The handles within reach of a place, nearest first, in the order in which they are taken."""
-        return near
-
-    def release(self) -> None:
-        """Let go of the handle."""
-
-    def pick(self, gesture: Gesture) -> None:
-        """Handle a click or ENTER at a place without widget and handle."""
-
-    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        """Follow a drag that began at a place without widget and handle."""
-
-    def wheel(self, gesture: Gesture) -> None:
-        """Handle a turn of the wheel at a place without widget."""
-
-    def key(self, name: str, typed: str) -> bool:
-        """Handle a key; returns False if it does nothing here."""
-        return False
-
-    def escape(self) -> bool:
-        """Cancel an action that was begun; returns False if there is none, and the screen is left."""
-        return False
-
-    def idle(self) -> bool:
-        """Do a part of the work that waits until nothing moves; returns whether the screen changed."""
-        return False
+    def build(self, around: Surroundings) -> Content:
+        """The content of the screen now."""
+        return Content()
 
     def enter(self) -> None:
         """Prepare to be shown."""
@@ -186,16 +169,21 @@ class Pages(Screen):
     def enter(self) -> None:
         self.page = 0
 
-    def pick(self, gesture: Gesture) -> None:
-        self.page += 1
+    def build(self, around: Surroundings) -> Content:
+        return Content(
+            items=self.items(),
+            pick=lambda gesture: self._turn(1),
+            wheel=lambda gesture: self._turn(1 if gesture.steps < 0 else -1),
+            key=lambda name, typed: self._turn({"space": 1, "page down": 1, "page up": -1}.get(name, 0)),
+        )
 
-    def wheel(self, gesture: Gesture) -> None:
-        self.page += 1 if gesture.steps < 0 else -1
+    def items(self) -> Sequence[Item]:
+        """The items of the page."""
+        raise NotImplementedError
 
-    def key(self, name: str, typed: str) -> bool:
-        step = {"space": 1, "page down": 1, "page up": -1}.get(name, 0)
-        self.page += step
-        return step != 0
+    def _turn(self, pages: int) -> bool:
+        self.page += pages
+        return pages != 0
 
 
 AnyRow = TypeVar("AnyRow")

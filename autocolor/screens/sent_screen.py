@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import islice
 from textwrap import wrap
 from typing import Final, NamedTuple
@@ -16,7 +17,7 @@ from typing import Final, NamedTuple
 from autocolor.journal.description import describe
 from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import MOST_DESCRIBED
-from autocolor.screens.screen import Pages, page_of
+from autocolor.screens.screen import Content, Pages, Surroundings, page_of
 from autocolor.screens.session import SENT, LastEdit, Session
 from autocolor.sending import configuration_of
 from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, WHITE, WIDTH, YELLOW, Item, text
@@ -81,9 +82,9 @@ class SentScreen(Pages):
             ],
         ]
 
-    def idle(self) -> bool:
+    def build(self, around: Surroundings) -> Content:
         # An edit on this screen is listed once it has been sent.
-        return self._shown is not self.session.last_edit
+        return replace(super().build(around), idle=lambda: self._shown is not self.session.last_edit)
 
 
 def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[ListingRow]:

@@ -21,12 +21,11 @@ from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 from autocolor.screens.comparing import BEFORE, NamedScene
 from autocolor.screens.naming import name_variant
-from autocolor.screens.screen import Screen
+from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.steps import compare
 from autocolor.widgets.items import (
     CHARACTER,
-    GRAY,
     LIGHT_GRAY,
     NIGHT,
     SLATE,
@@ -73,6 +72,10 @@ PLACES: Final = tuple(
 
 MOST_COLORS: Final = 200
 """Assumed: the most colors of a small picture; more are not seen at this size."""
+
+
+EMPTY: Final = ("no variant is kept yet", "keep the scene as it is now, and come back to it later")
+"""The lines of the screen before a variant is kept."""
 
 
 class VariantsScreen(Screen):
@@ -122,22 +125,22 @@ class VariantsScreen(Screen):
                 shown.append((area, BACKGROUND + 1 + number * share, small))
         return shown
 
-    def loads(self) -> Sequence[tuple[int, Bytes]]:
-        return [(first, small.colors) for _, first, small in self._shown()]
+    def build(self, around: Surroundings) -> Content:
+        shown = self._shown()
+        return Content(
+            items=[small.item(first, area.left + FRAME, area.top + FRAME) for area, first, small in shown]
+            if self.session.studio.variants
+            else [
+                text(line, 16, ROW_LINES * number + TEXT_DOWN, LIGHT_GRAY)
+                for number, line in enumerate(EMPTY)
+            ],
+            loads=[(first, small.colors) for _, first, small in shown],
+            rows=self._rows,
+            widgets=self._buttons(),
+            idle=self._idle,
+        )
 
-    def items(self) -> Sequence[Item]:
-        if not self.session.studio.variants:
-            return [
-                text("no variant is kept yet", 16, TEXT_DOWN, LIGHT_GRAY),
-                text(
-                    "keep the scene as it is now, and come back to it later", 16, ROW_LINES + TEXT_DOWN, GRAY
-                ),
-            ]
-        return [
-            small.item(first, area.left + FRAME, area.top + FRAME) for area, first, small in self._shown()
-        ]
-
-    def widgets(self) -> Sequence[Widget]:
+    def _buttons(self) -> Sequence[Widget]:
         return [
             VariantButton(
                 name,
@@ -148,7 +151,7 @@ class VariantsScreen(Screen):
             for name, area in zip(self._names(), PLACES, strict=False)
         ]
 
-    def idle(self) -> bool:
+    def _idle(self) -> bool:
         """Compute the next missing small picture."""
         share = self._share()
         for scene in self._scenes():
@@ -185,7 +188,7 @@ class VariantsScreen(Screen):
         names = list(self.session.studio.variants)
         return self._chosen if self._chosen in names else names[-1] if names else ""
 
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         name = self._present
         why_not = "" if name else "no variant is kept yet"
         rows: list[Widget] = [

@@ -155,7 +155,7 @@ class Viewer:
         if board.typing.is_on:
             return self._do(None, lambda: board.typing.key(name, typed))
         return self._do(source, lambda: board.key(name, typed), repeated, repeated) or self._do(
-            source, lambda: board.screen.key(name, typed), repeated, repeated
+            source, lambda: board.content.key(name, typed), repeated, repeated
         )
 
     def on_release(self, name: str) -> None:
@@ -236,7 +236,7 @@ class Viewer:
             self.session.moving = False
             self._refine()
             self._update()
-        elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
+        elif (rests and self.board.content.idle()) or self._had_news != self.session.has_news:
             self._update()
         if rests and not self.board.is_dragging and tell_effect(self.session):
             self._update()
@@ -386,9 +386,7 @@ class Viewer:
         self.board.clear()
         self.session.tell("")
         self._update()
-        # Without a pointer, no highlights are marked.
-        self.board.screen.idle()
-        self._sheet.show(self.board.page()._replace(items=self.board.screen.items()))
+        self._sheet.show(self.board.page()._replace(items=self.board.content.items))
         self._unit.hide()
 
 

@@ -175,7 +175,7 @@ def sheet(guide: str, names: Sequence[str], across: int = 2) -> Field:
 
 def grab(viewer: Viewer, label: str, by: tuple[int, int]) -> Joystick:
     """Begin to drag the handle of a label by elements and lines; returns the unit, which still tracks."""
-    handle = next(each for each in viewer.board.screen.handles() if each.label.startswith(label))
+    handle = next(each for each in viewer.board.content.handles if each.label.startswith(label))
     joystick = point_at(viewer, handle.element, handle.line)
     joystick.track = True
     viewer.poll()
@@ -187,7 +187,7 @@ def grab(viewer: Viewer, label: str, by: tuple[int, int]) -> Joystick:
 
 def idle(viewer: Viewer) -> None:
     """Let the viewer do what it does while nothing moves."""
-    while viewer.board.screen.idle():
+    while viewer.board.content.idle():
         viewer.on_tick()
 
 

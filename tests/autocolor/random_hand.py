@@ -74,7 +74,7 @@ class RandomHand:
         """A place on a widget, near a handle, at an edge, or anywhere."""
         chance, board = self._random.random(), self.viewer.board
         widgets = [each for each in board.widgets() if not isinstance(each, (Gap, Heading))]
-        handles = board.screen.handles()
+        handles = board.content.handles
         if chance < 0.6 and widgets:
             area = self._random.choice(widgets).area
             return self._between(area.left, area.right), self._between(area.top, area.bottom)

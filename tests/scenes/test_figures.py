@@ -123,7 +123,7 @@ def test_a_click_on_a_bar_of_a_screen_mixes_a_color_and_leaves_the_words_and_the
 
 def test_the_views_of_figure_5_show_the_object_and_marks_for_all_lights_and_the_eye() -> None:
     with figures.open_viewer("coupe", "light and view") as (viewer, _):
-        handles = viewer.board.screen.handles()
+        handles = viewer.board.content.handles
         names = {light.name for light in viewer.studio.scene.lights}
         for side in SIDES:
             points = [movable_of(each) for each in handles if side.area.has(each.element, each.line)]

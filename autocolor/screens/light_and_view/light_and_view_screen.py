@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final
 
-from autocolor.arrays import Words
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.scene.scene import FRONTS
@@ -44,7 +43,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
 from autocolor.screens.light_parameters import KIND, parameter_rows
 from autocolor.screens.picture.over_picture import camera_rows
 from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
-from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.screen import Content, Handle, Screen, Surroundings
 from autocolor.screens.session import Session
 from autocolor.widgets.items import (
     GRAY,
@@ -138,18 +137,24 @@ class LightAndViewScreen(Screen):
     def enter(self) -> None:
         self._views, self._eye_is_chosen = None, False
 
-    def leave(self) -> None:
-        self.release()
-
     # How it looks.
 
-    def base(self) -> Words | int:
-        return self._lines.page(self.session.scene, self.views)
+    def build(self, around: Surroundings) -> Content:
+        scene, views = self.session.scene, self.views
+        return Content(
+            base=self._lines.page(scene, views),
+            # The items know where the numerals are by which handles are grabbed.
+            items=self._items(),
+            handles=self._driven_handles(),
+            rows=self._rows,
+            hint=self._hint,
+            pick=self._pick,
+            drag=self._drag,
+            wheel=self._wheel,
+            idle=lambda: self._lines.find_next(scene, views),
+        )
 
-    def idle(self) -> bool:
-        return self._lines.find_next(self.session.scene, self.views)
-
-    def items(self) -> Sequence[Item]:
+    def _items(self) -> Sequence[Item]:
         scene, views, chosen = self.session.scene, self.views, self.chosen
         target, moved = target_of(scene), self._moved if self._has_lines else None
         items = self._quarter()
@@ -171,7 +176,7 @@ class LightAndViewScreen(Screen):
 
     # Handles.
 
-    def handles(self) -> Sequence[Handle]:
+    def _driven_handles(self) -> Sequence[Handle]:
         scene, views, chosen = self.session.scene, self.views, self.chosen
         handles = self._handles.of(lambda: handles_in(scene, views, chosen), scene, views, chosen)
         signs = {
@@ -185,12 +190,13 @@ class LightAndViewScreen(Screen):
                 sign=signs.get(movable, NOWHERE),
                 place=partial(self._place, movable),
                 hold=partial(self._hold, movable),
+                let_go=partial(setattr, self, "_moved", None),
             )
             for handle in handles
             for movable in [movable_of(handle)]
         ]
 
-    def hint(self, element: int, line: int) -> str:
+    def _hint(self, element: int, line: int) -> str:
         if PICTURE_AREA.has(element, line):
             return "The view: drag to turn around the object, the wheel moves closer; click: picture or mesh"
         side = side_at(element, line)
@@ -210,9 +216,6 @@ class LightAndViewScreen(Screen):
         self._moved = movable.point_in(self.session.scene, self.views)
         self._mark = mark_of(movable, side_of(movable), self.session.scene, self.views)
         self._has_lines = movable.what != FLAP
-
-    def release(self) -> None:
-        self._moved = None
 
     def _place(self, movable: MovablePoint, element: int, line: int) -> None:
         session, views = self.session, self.views
@@ -239,13 +242,13 @@ class LightAndViewScreen(Screen):
         else:
             session.tell(f"{movable.label}: {point_text(point, views)}")
 
-    def pick(self, gesture: Gesture) -> None:
+    def _pick(self, gesture: Gesture) -> None:
         if PICTURE_AREA.has(gesture.element, gesture.line):
             self._show(PICTURE if self._shown == MESH else MESH)
         else:
             self.session.tell(self.help)
 
-    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+    def _drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         if PICTURE_AREA.has(start.element, start.line):
             self.edits.turn(*turn_between(last.element, last.line, now.element, now.line))
             return
@@ -256,7 +259,7 @@ class LightAndViewScreen(Screen):
             center[side.up] += (now.line - last.line) / self.views.scale
             self._views = self.views.centered(center)
 
-    def wheel(self, gesture: Gesture) -> None:
+    def _wheel(self, gesture: Gesture) -> None:
         if PICTURE_AREA.has(gesture.element, gesture.line):
             self.edits.move(wheel_ratio(gesture.steps))
         else:
@@ -264,7 +267,7 @@ class LightAndViewScreen(Screen):
 
     # The menu.
 
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         session = self.session
         return [
             *light_rows(session, self.edits, self.chosen, self.choose),

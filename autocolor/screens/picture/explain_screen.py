@@ -12,7 +12,7 @@ from autocolor.explanation.explain import explain
 from autocolor.explanation.text import LABEL, TextRow, rows_of_text
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
-from autocolor.screens.screen import Screen
+from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import EXPLAIN, Session
 from autocolor.widgets.items import (
     CHARACTER,
@@ -64,7 +64,7 @@ class ExplainScreen(Screen):
         more = keys if self.session.has_keyboard else "; the right edge: the menu"
         self.session.tell(f"{self.help}{more}", persistent=True)
 
-    def items(self) -> Sequence[Item]:
+    def build(self, around: Surroundings) -> Content:
         """The rows of the explanation, and the magnifier."""
         studio, pixel = self.session.studio, self.session.pixel
 
@@ -73,14 +73,16 @@ class ExplainScreen(Screen):
             row_items = [item for number, row in enumerate(rows) for item in items_of_row(row, number)]
             return [*row_items, *magnifier_items(studio.words, *pixel)]
 
-        return self._items.of(draw, studio.display_image, pixel)
+        return Content(
+            items=self._items.of(draw, studio.display_image, pixel), pick=self._pick, key=self._key
+        )
 
-    def pick(self, gesture: Gesture) -> None:
+    def _pick(self, gesture: Gesture) -> None:
         if MAGNIFIER.has(gesture.element, gesture.line):
             down, across = gesture.line - MAGNIFIER.top, gesture.element - MAGNIFIER.left
             self._step(down // SIDE - DOWN, across // SIDE - ACROSS)
 
-    def key(self, name: str, typed: str) -> bool:
+    def _key(self, name: str, typed: str) -> bool:
         if name not in STEPS:
             return False
         self._step(*STEPS[name])

@@ -6,7 +6,7 @@ The list begins with the state that was opened. The present state is marked, and
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from typing import Final
@@ -16,6 +16,7 @@ from autocolor.scene.scene import Scene
 from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import MOST_DESCRIBED
 from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import HISTORY, Session
 from autocolor.screens.steps import redo, undo
 from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, Area, Item, fitted
@@ -60,6 +61,10 @@ class HistoryScreen(OverPicture):
     def enter(self) -> None:
         self._first = None
 
+    def build(self, around: Surroundings) -> Content:
+        content = super().build(around)
+        return replace(content, rows=self._rows, widgets=self._steps() if around.has_panels else ())
+
     @property
     def _scenes(self) -> tuple[Scene, ...]:
         """The scenes of the session in order, from the first to the last scene that can be redone."""
@@ -79,7 +84,7 @@ class HistoryScreen(OverPicture):
         first = max(0, min(first, count - MOST_ROWS))
         return range(first, min(count, first + MOST_ROWS))
 
-    def widgets(self) -> Sequence[Widget]:
+    def _steps(self) -> Sequence[Widget]:
         """The steps, each a row."""
         shown, present = self._shown, self._present
         rows = []
@@ -111,7 +116,7 @@ class HistoryScreen(OverPicture):
 
         return self._lines.of(lines, *scenes)
 
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         count = len(self._scenes)
         if count <= MOST_ROWS:
             return []

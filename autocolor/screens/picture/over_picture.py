@@ -12,7 +12,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar, Final, NamedTuple
 
-from autocolor.arrays import Bytes, Words, half_up
+from autocolor.arrays import half_up
 from autocolor.checks import Color
 from autocolor.mapping.colors import entries_of
 from autocolor.mapping.intensity import held_name
@@ -25,7 +25,7 @@ from autocolor.screens.cached import Cached
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.naming import name_view
 from autocolor.screens.picture.picture_edits import ALL_HELD, PictureEdits
-from autocolor.screens.screen import Sample, Screen, surface_of
+from autocolor.screens.screen import Content, Sample, Screen, Surroundings, surface_of
 from autocolor.screens.session import EXPLAIN, Session
 from autocolor.screens.steps import end_comparing
 from autocolor.screens.surface.painting import change_paint, color_of
@@ -52,32 +52,37 @@ class OverPicture(Screen):
         self._grip: tuple[int, int] | None = None
         """From the pointer to the upper left corner of the legend, if the present drag moves the legend."""
 
-    def base(self) -> Words:
-        image = self.session.comparing.image
-        return self.session.studio.words if image is None else image.words
-
-    def items(self) -> Sequence[Item]:
-        """The legend of a scalar."""
-        image = self.session.comparing.image or self.session.studio.display_image
-        is_under_menu = self.is_under_menu
+    def build(self, around: Surroundings) -> Content:
+        """The picture with the legend of a scalar, and the gestures that turn it."""
+        other, present = self.session.comparing.image, self.session.studio.display_image
+        image = other or present
 
         def draw() -> Sequence[Item]:
-            self._legend = legend(image, MENU.left if is_under_menu else None, self.corners)
+            self._legend = legend(image, MENU.left if around.has_menu else None, self.corners)
             return legend_items(self._legend)
 
-        return self._items.of(draw, image, is_under_menu)
-
-    def loads(self) -> Sequence[tuple[int, Bytes]]:
-        image = self.session.comparing.image
-        return () if image is None else ((0, image.entries),)
+        return Content(
+            base=image.words,
+            items=self._items.of(draw, image, around.has_menu),
+            loads=() if other is None else ((0, other.entries),),
+            hint=self.hint,
+            sample=self.sample,
+            color_at=self._color_at,
+            take_color=self._take_color,
+            pick=self.pick,
+            drag=self.drag,
+            wheel=self.wheel,
+        )
 
     def hint(self, element: int, line: int) -> str:
+        """The surface, the part and the level at a place."""
         pointed = self._pointed(element, line)
         if pointed is not None:
             return pointed.message
         return "the legend: drag it" if self._is_on_legend(element, line) else self.help
 
     def pick(self, gesture: Gesture) -> None:
+        """Choose a surface, explain a pixel, or end comparing."""
         session = self.session
         if session.comparing.is_on:
             end_comparing(session)
@@ -98,6 +103,7 @@ class OverPicture(Screen):
         session.tell(pointed.message)
 
     def sample(self, element: int, line: int) -> Sample | None:
+        """The pixel of the picture at a place."""
         pointed, studio = self._pointed(element, line), self.session.studio
         if pointed is None:
             return None
@@ -106,11 +112,11 @@ class OverPicture(Screen):
         first = studio.level_ranges[pointed.surface].first
         return Sample(pointed.surface, (red, green, blue), word - first)
 
-    def color_at(self, element: int, line: int) -> Color | None:
+    def _color_at(self, element: int, line: int) -> Color | None:
         sample = self.sample(element, line)
         return None if sample is None else sample.color
 
-    def take_color(self, color: Color | str, element: int, line: int) -> None:
+    def _take_color(self, color: Color | str, element: int, line: int) -> None:
         name = self.session.surface_name
         change_paint(
             self.session,
@@ -125,6 +131,7 @@ class OverPicture(Screen):
         return self._legend.has(element, line)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+        """Turn around the object, move the picture, or move the legend."""
         if last is start:
             self._grip = None
             if self._legend is not None and self._is_on_legend(start.element, start.line):
@@ -141,6 +148,7 @@ class OverPicture(Screen):
             self.edits.turn(*turn_between(last.element, last.line, now.element, now.line))
 
     def wheel(self, gesture: Gesture) -> None:
+        """Move closer, or farther."""
         self.edits.move(wheel_ratio(gesture.steps))
 
     def _pointed(self, element: int, line: int) -> Pointed | None:

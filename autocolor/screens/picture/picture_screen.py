@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -11,9 +12,9 @@ from autocolor.screens.light_parameters import all_lights_on, light_alone
 from autocolor.screens.picture.light_handles import LightHandles
 from autocolor.screens.picture.over_picture import OverPicture, camera_rows, stage_rows, surface_row
 from autocolor.screens.picture.picture_edits import sides_of
-from autocolor.screens.screen import Handle
+from autocolor.screens.screen import Content, Surroundings, surface_at
 from autocolor.screens.session import PICTURE, SENT, Session
-from autocolor.widgets.items import SCREEN, Item
+from autocolor.widgets.items import SCREEN
 from autocolor.widgets.menu import WORK, Section
 from autocolor.widgets.widget import Button, Choice, Pair, Steps, Switch, Widget, titled
 
@@ -39,9 +40,27 @@ class PictureScreen(OverPicture):
         self._has_marks = False
         """Whether the highlights are marked: the pointer rests on the object."""
 
-    def items(self) -> Sequence[Item]:
-        marks = self._marks.items(numbered=True) if self._has_marks else ()
-        return [*super().items(), *marks]
+    def build(self, around: Surroundings) -> Content:
+        session, content = self.session, super().build(around)
+        self._handles.area = WORK if around.has_menu else SCREEN
+        is_on_object = bool(surface_at(session.studio, *around.pointer))
+        may_mark = is_on_object and around.has_panels and not session.explains
+
+        def idle() -> bool:
+            had_marks, self._has_marks = self._has_marks, may_mark
+            return may_mark != had_marks
+
+        marks = self._handles.items(numbered=True) if self._has_marks and may_mark else ()
+        return replace(
+            content,
+            items=[*content.items, *marks],
+            # A click that explains a pixel picks no handle.
+            handles=() if session.explains else self._handles.handles(),
+            preferred=self._handles.preferred,
+            rows=self._rows,
+            escape=self._escape,
+            idle=idle,
+        )
 
     def hint(self, element: int, line: int) -> str:
         pointed = self._pointed(element, line)
@@ -50,25 +69,7 @@ class PictureScreen(OverPicture):
         does = "click explains" if self.session.explains else "drag turns, click chooses, Shift explains"
         return f"{', '.join(pointed.names)}: {does}"
 
-    def idle(self) -> bool:
-        had_marks, is_on_object = self._has_marks, bool(self.surface_at(*self.pointer))
-        self._has_marks = is_on_object and self.has_panels and not self.session.explains
-        return self._has_marks != had_marks
-
-    def handles(self) -> Sequence[Handle]:
-        # A click that explains a pixel picks no handle.
-        return () if self.session.explains else self._marks.handles()
-
-    @property
-    def _marks(self) -> LightHandles:
-        """The marks and handles of the lights, as far as the menu does not cover them."""
-        self._handles.area = WORK if self.is_under_menu else SCREEN
-        return self._handles
-
-    def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
-        return self._handles.preferred(near, element, line)
-
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         session, edits = self.session, self.edits
         return [
             *self._up_rows(),
@@ -142,7 +143,7 @@ class PictureScreen(OverPicture):
         self.session.explains = True
         self.session.tell("click the pixel to explain", persistent=True)
 
-    def escape(self) -> bool:
+    def _escape(self) -> bool:
         explains, self.session.explains = self.session.explains, False
         return explains
 

@@ -8,6 +8,7 @@ screen borrows the words of all surfaces: when it is left, the sheet restores ev
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -21,9 +22,9 @@ from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import NOW
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import SPLIT, Session
 from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, Area, Item, filled, fitted, text
-from autocolor.widgets.widget import Widget
 
 FIRST: Final = BACKGROUND + 1
 """The first borrowed word."""
@@ -62,21 +63,22 @@ class SplitScreen(OverPicture):
         colors = f"each half at coarser levels: colors within {off} of 255" if off else "every color exact"
         self.session.tell(f"{difference}; {colors}; drag moves the line")
 
-    # How it looks. While the whole other state is shown, it looks as every screen over the picture.
-
-    def base(self) -> Words:
-        if self.session.comparing.is_on:
-            return super().base()
+    def build(self, around: Surroundings) -> Content:
         halves, line = self.halves, self._line
-        return self._base.of(lambda: halves.words(line), halves, line)
-
-    def loads(self) -> Sequence[tuple[int, Bytes]]:
-        return super().loads() if self.session.comparing.is_on else [(FIRST, self.halves.colors)]
-
-    def items(self) -> Sequence[Item]:
-        """The line, and the names of the states beside it."""
+        gestures = Content(pick=self.pick, drag=lambda start, last, now: self.pick(now))
         if self.session.comparing.is_on:
-            return super().items()
+            # While the whole other state is shown, it looks as every screen over the picture.
+            whole = super().build(around)
+            return replace(gestures, base=whole.base, items=whole.items, loads=whole.loads)
+        return replace(
+            gestures,
+            base=self._base.of(lambda: halves.words(line), halves, line),
+            items=self._items_at_line(),
+            loads=[(FIRST, halves.colors)],
+        )
+
+    def _items_at_line(self) -> Sequence[Item]:
+        """The line, and the names of the states beside it."""
         line, other = self._line, self.session.comparing.other
         left = fitted(other.name if other else NOW, max(0, line - 2 * MARGIN) // CHARACTER)
         right = fitted(NOW, max(0, WIDTH - line - 2 * MARGIN) // CHARACTER)
@@ -87,22 +89,9 @@ class SplitScreen(OverPicture):
             text(right, line + MARGIN, TOP, WHITE, BLACK),
         ]
 
-    def rows(self) -> Sequence[Widget]:
-        return ()
-
-    def hint(self, element: int, line: int) -> str:
-        return self.help
-
-    def sample(self, element: int, line: int) -> None:
-        """None: the borrowed words say nothing about surfaces."""
-
-    # Gestures: every click and drag moves the line.
-
     def pick(self, gesture: Gesture) -> None:
+        """Move the line."""
         self._line = min(max(gesture.element, 1), WIDTH - 1)
-
-    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        self.pick(now)
 
 
 class Halves(NamedTuple):

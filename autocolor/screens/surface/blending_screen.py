@@ -9,14 +9,16 @@ intensity".
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 from autocolor.mapping.colors import blend_from, blend_level
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import OverPicture, paint_rows, surface_row
+from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.bars import LANE, LevelBar, PercentBar
-from autocolor.widgets.items import WIDTH, Area, Item
+from autocolor.widgets.items import WIDTH, Area
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.widget import Gap, Widget
 
@@ -54,11 +56,14 @@ class BlendingScreen(OverPicture):
         if surface is not None and surface.paint.ramp is not None:
             self.session.tell(f"{surface.name} has a ramp and no blend; change the ramp in color mixing")
 
-    def items(self) -> Sequence[Item]:
+    def build(self, around: Surroundings) -> Content:
+        content = replace(super().build(around), rows=self._rows)
+        if not around.has_panels:
+            return content
         # The bar takes the legend's place.
-        return () if self.has_panels else super().items()
+        return replace(content, items=(), widgets=self._bars(around.has_menu))
 
-    def rows(self) -> Sequence[Widget]:
+    def _rows(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
         if surface is None:
             return []
@@ -72,13 +77,13 @@ class BlendingScreen(OverPicture):
             *paint_rows(self.session, surface.paint),
         ]
 
-    def widgets(self) -> Sequence[Widget]:
+    def _bars(self, has_menu: bool) -> Sequence[Widget]:
         surface = self.session.chosen_surface
         if surface is None or surface.paint.ramp is not None:
             return []
         levels = self.session.studio.level_ranges[surface.name].levels
         # Where the menu comes, the bar moves to its left.
-        right = (MENU.left if self.is_under_menu else WIDTH) - BESIDE
+        right = (MENU.left if has_menu else WIDTH) - BESIDE
         between = right - PERCENT_ELEMENTS
         paint = surface.paint
         return [

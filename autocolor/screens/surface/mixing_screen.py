@@ -42,7 +42,7 @@ from autocolor.scene.swatches import mixed
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import FIRST_RAMP_COLORS, paint_rows, surface_row
-from autocolor.screens.screen import Sample, Screen, surface_of
+from autocolor.screens.screen import Content, Sample, Screen, Surroundings, surface_of
 from autocolor.screens.session import Session
 from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
 from autocolor.screens.surface.paint_choices import PaintChoices
@@ -146,7 +146,21 @@ class MixingScreen(Screen):
 
     # Widgets and items.
 
-    def rows(self) -> Sequence[Widget]:
+    def build(self, around: Surroundings) -> Content:
+        return Content(
+            items=self._items(),
+            loads=self._loads(),
+            rows=self._rows,
+            widgets=self._widgets(),
+            hint=self._hint,
+            sample=self._sample,
+            color_at=self._color_at,
+            take_color=self._take_color,
+            pick=self._pick,
+            escape=self._escape,
+        )
+
+    def _rows(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
         if surface is None:
             return []
@@ -193,11 +207,11 @@ class MixingScreen(Screen):
         return Button(
             f"take {thing}",
             "Stop picking." if is_on else f"{self._prompt(thing)}.",
-            run=self.escape if is_on else partial(self._begin_taking, thing),
+            run=self._escape if is_on else partial(self._begin_taking, thing),
             is_chosen=is_on,
         )
 
-    def widgets(self) -> Sequence[Widget]:
+    def _widgets(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
@@ -227,7 +241,7 @@ class MixingScreen(Screen):
             *self.choices.finishes(FINISHES_ROW),
         ]
 
-    def items(self) -> Sequence[Item]:
+    def _items(self) -> Sequence[Item]:
         surface = self.session.chosen_surface
         if surface is None:
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
@@ -242,15 +256,15 @@ class MixingScreen(Screen):
             self._picture_item(),
         ]
 
-    def loads(self) -> Sequence[tuple[int, Bytes]]:
+    def _loads(self) -> Sequence[tuple[int, Bytes]]:
         surface = self.session.chosen_surface
         if surface is None or self._taking:
             return []
         light, object_color = (section.color_of(surface.paint) for section in (self.light, self.object))
         return self._mixing_words.loads(light, object_color, self.choices.colors)
 
-    def hint(self, element: int, line: int) -> str:
-        sample = self.sample(element, line)
+    def _hint(self, element: int, line: int) -> str:
+        sample = self._sample(element, line)
         if sample is None:
             return self._prompt(self._taking) if self._taking else self.help
         name = sample.surface
@@ -325,7 +339,7 @@ class MixingScreen(Screen):
             return label, f"color {self._chosen.number_in(paint.ramp) + 1} of {len(paint.ramp)}"
         return label, f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 
-    def sample(self, element: int, line: int) -> Sample | None:
+    def _sample(self, element: int, line: int) -> Sample | None:
         if self.session.chosen_surface is None:
             return None
         pixel, studio = self._present_crop.pixel_at(element, line), self.session.studio
@@ -338,9 +352,9 @@ class MixingScreen(Screen):
 
     # Actions.
 
-    def pick(self, gesture: Gesture) -> None:
+    def _pick(self, gesture: Gesture) -> None:
         element, line = gesture.element, gesture.line
-        sample, section = self.sample(element, line), self._section_at(element, line)
+        sample, section = self._sample(element, line), self._section_at(element, line)
         if self._taking:
             self._pick_to_take(sample)
         elif section is not None:
@@ -363,17 +377,17 @@ class MixingScreen(Screen):
         self._taking = thing
         self.session.tell(self._prompt(thing))
 
-    def escape(self) -> bool:
+    def _escape(self) -> bool:
         was_taking, self._taking = bool(self._taking), ""
         return was_taking
 
-    def take_color(self, color: Color | str, element: int, line: int) -> None:
+    def _take_color(self, color: Color | str, element: int, line: int) -> None:
         section = self._section_at(element, line)
         if section is not None:
             self._chosen = section
         self._take(color)
 
-    def color_at(self, element: int, line: int) -> Color | None:
+    def _color_at(self, element: int, line: int) -> Color | None:
         surface, section = self.session.chosen_surface, self._section_at(element, line) or self._chosen
         return None if surface is None else section.color_of(surface.paint)
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from autocolor.screens.picture.over_picture import OverPicture, surface_row
+from autocolor.screens.screen import Content, Surroundings
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Gap, Widget
 
@@ -18,7 +20,10 @@ class ReflectanceScreen(OverPicture):
     title = "reflectance"
     help = "How the chosen surface reflects; click in the picture: choose another"
 
-    def rows(self) -> Sequence[Widget]:
+    def build(self, around: Surroundings) -> Content:
+        return replace(super().build(around), rows=self._rows)
+
+    def _rows(self) -> Sequence[Widget]:
         session = self.session
         surface = session.chosen_surface
         if surface is None:

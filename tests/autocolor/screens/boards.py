@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from autocolor.arrays import Words
+from autocolor.arrays import Bytes
 from autocolor.errors import UsageError
-from autocolor.screens.input import Gesture
-from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.screen import Content, Handle, Screen, Surroundings
 from autocolor.screens.session import Session
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import Area
+from autocolor.widgets.items import Area, Item
 from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import Button, Choice, Entry, Gap, Widget
 from ramtek_emu import Ramtek9300
@@ -30,6 +29,20 @@ class Desk(Screen):
     title = "desk"
     help = "the desk"
     rows_more = 0
+
+    def build(self, around: Surroundings) -> Content:
+        return Content(
+            items=self.items(), loads=self.loads(), rows=self.rows, handles=self._handles(), key=self.key
+        )
+
+    def items(self) -> Sequence[Item]:
+        return ()
+
+    def loads(self) -> Sequence[tuple[int, Bytes]]:
+        return ()
+
+    def key(self, name: str, typed: str) -> bool:
+        return False
 
     def rows(self) -> Sequence[Widget]:
         scene = self.session.scene
@@ -50,7 +63,7 @@ class Desk(Screen):
             *[Button(f"row {number}") for number in range(self.rows_more)],
         ]
 
-    def handles(self) -> Sequence[Handle]:
+    def _handles(self) -> Sequence[Handle]:
         x, y, _ = self.session.scene.view.eye
         return [
             Handle("eye", round(200 + 10 * x), round(200 + 10 * y), "the eye", place=self._place),
@@ -91,10 +104,17 @@ class Room(Screen):
         self.rows_of: dict[str, int] = {"near": 3, "far": 15, "farther": 15}
         self.did: list[object] = []
 
-    def base(self) -> Words:
-        return self.session.studio.words
+    def build(self, around: Surroundings) -> Content:
+        return Content(
+            base=self.session.studio.words,
+            rows=self._rows,
+            widgets=[self._button("panel").at(Area(8, 8, 99, 23))] if around.has_panels else (),
+            handles=[Handle("covered", 470, 30, "?"), Handle("free", 300, 200, "a handle")],
+            pick=lambda gesture: self.did.append("pick"),
+            drag=lambda start, last, now: self.did.append((start.element, last.element, now.element)),
+        )
 
-    def rows(self) -> list[Widget]:
+    def _rows(self) -> list[Widget]:
         def choose(name: str) -> None:
             if name == "glass":
                 raise UsageError("a finish must not be glass; choose another")
@@ -107,18 +127,6 @@ class Room(Screen):
         for title, count in self.rows_of.items():
             rows += [Section(title), *(self._button(f"{title} {number}") for number in range(count))]
         return rows
-
-    def widgets(self) -> list[Widget]:
-        return [self._button("panel").at(Area(8, 8, 99, 23))]
-
-    def handles(self) -> list[Handle]:
-        return [Handle("covered", 470, 30, "?"), Handle("free", 300, 200, "a handle")]
-
-    def pick(self, gesture: Gesture) -> None:
-        self.did.append("pick")
-
-    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        self.did.append((start.element, last.element, now.element))
 
     def _button(self, label: str) -> Button:
         return Button(label, run=lambda: self.did.append(label))

@@ -46,7 +46,7 @@ def words_are_those_of_the_scene(hand: Hand) -> bool:
     """Whether the display has the words of the picture beside panels, but for lines over it."""
     studio = hand.viewer.studio
     shown, words = np.array(hand.display.words[:200, :500]), studio.words[:200, :500]
-    for left, top, right, bottom in (widget.area for widget in hand.viewer.board.layout.beside):
+    for left, top, right, bottom in (widget.area for widget in hand.viewer.board.content.widgets):
         shown[top : bottom + 1, left : right + 1] = words[top : bottom + 1, left : right + 1]
     others = shown[shown != words]
     return len(others) < words.size // 50 and bool((others >= SCREENS.first).all())

@@ -159,10 +159,10 @@ class Hand:
 
     def handle(self, label: str) -> tuple[int, int]:
         """The place of a handle whose label begins so."""
-        for each in self.viewer.board.screen.handles():
+        for each in self.viewer.board.content.handles:
             if each.label.startswith(label):
                 return each.element, each.line
-        labels = [each.label for each in self.viewer.board.screen.handles()]
+        labels = [each.label for each in self.viewer.board.content.handles]
         raise AssertionError(f"{label!r} is not among {labels}")
 
 
@@ -175,6 +175,6 @@ def folded_section_of(viewer: Viewer, label: str) -> str:
     """The label of the folded section of the menu with a row; empty if there is none."""
     board = viewer.board
     folded = [row.label for row in board.layout.rows if isinstance(row, Section) and not row.is_open]
-    rows = rows_of_menu(viewer.session, board.screen, viewer.screens.values())
+    rows = rows_of_menu(viewer.session, board.screen, board.content, viewer.screens.values())
     sections = [section for section in sections_of(rows)[1:] if section[0].label in folded]
     return next((s[0].label for s in sections if any(row.label == label for row in s[1:])), "")

@@ -67,7 +67,7 @@ def hand(folder: Path) -> Hand:
 def rows_of(hand: Hand, recent: bool = False) -> dict[str, FileRow]:
     """The rows of files, by the names that are shown."""
     column = RIGHT if recent else LEFT
-    rows = hand.viewer.board.screen.widgets()
+    rows = hand.viewer.board.content.widgets
     return {row.shown: row for row in rows if isinstance(row, FileRow) and column.covers(row.area)}
 
 
@@ -240,7 +240,7 @@ def test_the_pages_of_a_large_folder_show_all_files(tmp_path: Path, number: int)
     assert seen == [f"{each}.obj" for each in range(number)]
     if number > MOST_ROWS:
         hand.pick("page", 0.05)
-        assert "page" in [row.label for row in hand.viewer.board.screen.widgets()]
+        assert "page" in [row.label for row in hand.viewer.board.content.widgets]
 
 
 def test_the_up_axis_and_the_scale_of_a_mesh_are_chosen_before_it_is_opened(hand: Hand, folder: Path) -> None:
@@ -463,8 +463,8 @@ def point_at(hand: Hand, name: str, recent: bool = False) -> None:
 
 def small_picture(hand: Hand) -> Area | None:
     """The area of the small picture; None without borrowed entries."""
-    screen = hand.viewer.board.screen
-    return screen.items()[-1].area if screen.loads() else None
+    content = hand.viewer.board.content
+    return content.items[-1].area if content.loads else None
 
 
 @pytest.mark.parametrize("recent", first(1, [True, False]))
@@ -510,7 +510,7 @@ def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, 
     hand = hand_at(folder, "file")
     point_at(hand, "wall.npz")
     settle(hand)
-    ((first, colors),) = hand.viewer.board.screen.loads()
+    ((first, colors),) = hand.viewer.board.content.loads
     assert first > 0
     assert first + len(colors) <= SCREENS.first
     area = small_picture(hand)

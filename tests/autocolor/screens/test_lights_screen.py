@@ -81,14 +81,14 @@ def test_every_parameter_of_a_light_has_a_row(hand: Hand) -> None:
     session.edit(
         session.scene.with_light("key", half_spaces={"left": {"point": (0, 0, 0), "direction": (0, 0, 1)}})
     )
-    labels = [row.label for row in hand.viewer.board.screen.rows()]
+    labels = [row.label for row in hand.viewer.board.content.rows()]
     # Long words are shortened.
     names = {key.replace("_", " ").replace("surfaces", "surfac") for key in keys_of(Light)} - {"direction"}
     for name in names:
         assert any(label.replace("surfaces", "surfac").startswith(name) for label in labels), name
     assert {"left", "left width"} <= set(labels)
     hand.pick("kind")
-    labels = [row.label for row in hand.viewer.board.screen.rows()]
+    labels = [row.label for row in hand.viewer.board.content.rows()]
     assert {"direction x", "direction y", "direction z"} <= set(labels)
 
 
@@ -158,7 +158,7 @@ def test_lights_are_removed_to_the_last_and_added_again(hand: Hand) -> None:
     assert told(hand) == ("light key removed; undo brings it back", False)
     hand.pick("mirror", 0.75)
     assert not hand.scene.lights
-    assert [row.label for row in hand.viewer.board.screen.rows()] == ["add a light"]
+    assert [row.label for row in hand.viewer.board.content.rows()] == ["add a light"]
     hand.pick("add a light")
     assert [light.name for light in hand.scene.lights] == ["light"]
 
@@ -270,10 +270,10 @@ ENDINGS: dict[str, Callable[[Hand], object]] = {
 
 @pytest.mark.parametrize("by", ENDINGS)
 def test_picking_is_ended_by_escape_its_row_and_another_screen(hand: Hand, by: str) -> None:
-    handles = len(hand.viewer.board.screen.handles())
+    handles = len(hand.viewer.board.content.handles)
     pick_points(hand, PLACES[:2])
     # Nothing else is grabbed meanwhile.
-    assert handles > 0 == len(hand.viewer.board.screen.handles())
+    assert handles > 0 == len(hand.viewer.board.content.handles)
     row = hand.widget("half spaces")
     assert (row.value, row.is_chosen) == ("2/3", True)  # type: ignore[attr-defined]
     ENDINGS[by](hand)
@@ -282,7 +282,7 @@ def test_picking_is_ended_by_escape_its_row_and_another_screen(hand: Hand, by: s
     assert (row.value, row.is_chosen) == ("add", False)  # type: ignore[attr-defined]
     hand.click(*PLACES[2])
     assert planes_of(hand) == ()
-    assert len(hand.viewer.board.screen.handles()) == handles
+    assert len(hand.viewer.board.content.handles) == handles
 
 
 def test_the_picked_points_are_marked_where_they_were_picked(hand: Hand) -> None:
@@ -427,7 +427,7 @@ def test_the_list_covers_handles_which_are_free_when_panels_are_hidden(hand: Han
     hand.viewer.on_pointer(element + 30, line + 60, "press", 2)
     hand.viewer.on_pointer(place[0] + 30, place[1] + 60, "move")
     hand.viewer.on_pointer(place[0] + 30, place[1] + 60, "release", 2)
-    assert not [each for each in hand.viewer.board.screen.handles() if each.label == "highlight of key"]
+    assert not [each for each in hand.viewer.board.content.handles if each.label == "highlight of key"]
     hand.pick("hide panels")
     element, line = hand.handle("highlight of key")
     assert element < end.right

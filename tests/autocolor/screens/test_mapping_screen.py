@@ -47,7 +47,7 @@ def points_of(hand: Hand) -> CurvePoints:
 
 
 def test_every_parameter_of_the_mapping_has_a_row(hand: Hand) -> None:
-    labels = {row.label for row in hand.viewer.board.screen.rows()}
+    labels = {row.label for row in hand.viewer.board.content.rows()}
     tables = {"mesh", "parts", "surfaces", "lights", "view", "views", "scalar", "name", "background", "front"}
     tables |= {"stage", "backdrop"}
     assert labels >= set(fields_of(Scene)) - tables
@@ -255,7 +255,7 @@ HELD = (("low", (0.1, 0.5)), ("object", (0.0, 2.0)))
 
 
 def labels_of(hand: Hand) -> list[str]:
-    return [row.label for row in hand.viewer.board.screen.rows()]
+    return [row.label for row in hand.viewer.board.content.rows()]
 
 
 def limits_of(hand: Hand, name: str) -> tuple[float, float]:
@@ -300,17 +300,17 @@ def test_a_minimum_is_below_its_maximum_however_far_it_is_dragged(tmp_path: Path
 def test_hidden_panels_leave_the_picture_below_the_curve_free(hand: Hand) -> None:
     hand.pick("straight")
     before = hand.scene
-    assert len(hand.viewer.board.screen.handles()) == 5
+    assert len(hand.viewer.board.content.handles) == 5
     # The panel does not turn the object behind it.
     hand.drag((PANEL.left + 2, PANEL.top + 2), (PANEL.left + 90, PANEL.top + 60))
     assert hand.scene.view == before.view
     undo(hand)
     hand.pick("hide panels")
-    screen = hand.viewer.board.screen
-    assert not screen.handles()
-    assert not screen.items()
+    content = hand.viewer.board.content
+    assert not content.handles
+    assert not content.items
     middle = place_of(0.5, 0.5)
-    assert "makes a point" not in screen.hint(*middle)
+    assert "makes a point" not in content.hint(*middle)
     hand.click(*middle)
     assert hand.scene is before
     hand.drag(middle, (middle[0] + 20, middle[1]))

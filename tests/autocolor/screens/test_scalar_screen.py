@@ -34,7 +34,7 @@ def scalar_of(hand: Hand) -> Scalar:
 
 
 def labels_of(hand: Hand) -> set[str]:
-    return {row.label for row in hand.viewer.board.screen.rows()}
+    return {row.label for row in hand.viewer.board.content.rows()}
 
 
 def test_every_column_of_the_scalar_has_a_row(hand: Hand) -> None:
@@ -50,7 +50,7 @@ def test_the_legend_is_dragged_and_let_go_again(hand: Hand) -> None:
     assert isinstance(screen, ScalarScreen)
 
     def place() -> tuple[int, int]:
-        hand.viewer.board.page()
+        hand.viewer.tell("")
         assert screen._legend is not None
         return screen._legend.swatches[0][:2]
 

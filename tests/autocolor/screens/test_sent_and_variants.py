@@ -194,12 +194,11 @@ def test_the_pages_have_every_row_once_and_nothing_overlaps(recorded: Recorded) 
     recorded.edit(EDITS["view"](SCENE))
     rows = rows_of_edit(last_edit(viewer), GMR_9300)
     viewer.on_key("f2")
-    screen = viewer.screens[viewer.page]
     count = -(-len(rows) // ROWS_A_PAGE)
     assert count > 1
     shown = []
     for _ in range(count):
-        page = screen.items()
+        page = viewer.board.content.items
         shown += [item.stream for item in page]
         for one, other in itertools.combinations(page, 2):
             assert not one.area.overlaps(other.area)
@@ -270,7 +269,7 @@ def shown_at(hand: Hand, place: int) -> np.ndarray[tuple[int, ...], np.dtype[np.
 
 
 def names(hand: Hand) -> list[str]:
-    return [each.label for each in hand.viewer.board.screen.widgets()]
+    return [each.label for each in hand.viewer.board.content.widgets]
 
 
 def test_without_a_variant_there_is_nothing_to_come_back_to(hand: Hand) -> None:
@@ -331,28 +330,28 @@ def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) ->
 
 def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
     keep(hand, 3)
-    assert len(hand.viewer.board.screen.items()) == 0
+    assert len(hand.viewer.board.content.items) == 0
     for number in (1, 2, 3, 3):
         hand.viewer.on_tick()
-        assert len(hand.viewer.board.screen.items()) == number
-    assert not hand.viewer.board.screen.idle()
+        assert len(hand.viewer.board.content.items) == number
+    assert not hand.viewer.board.content.idle()
     hand.pick("drop")
     hand.pick("< picture")
     assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
     # When the screen is back, those of kept variants still stand, and that of the dropped one is gone.
     hand.open_menu()
     hand.pick("variants")
-    assert len(hand.viewer.board.screen.items()) == 2
+    assert len(hand.viewer.board.content.items) == 2
     hand.pick("keep")
-    assert len(hand.viewer.board.screen.items()) == 2
-    assert hand.viewer.board.screen.idle()
-    assert not hand.viewer.board.screen.idle()
+    assert len(hand.viewer.board.content.items) == 2
+    assert hand.viewer.board.content.idle()
+    assert not hand.viewer.board.content.idle()
 
 
 def test_the_words_of_the_menu_keep_their_entries(hand: Hand) -> None:
     keep(hand, ON_PAGE)
     rest(hand)
-    loads = hand.viewer.board.screen.loads()
+    loads = hand.viewer.board.content.loads
     assert len(loads) == ON_PAGE
     ends = [(first, first + len(colors)) for first, colors in loads]
     assert all(end <= following for (_, end), (following, _) in pairwise(ends))
@@ -376,7 +375,7 @@ def test_many_variants_have_pages(hand: Hand) -> None:
     for _ in range(3):
         hand.pick("drop")
     assert len(names(hand)) == ON_PAGE
-    assert "page" not in [row.label for row in hand.viewer.board.screen.rows()]
+    assert "page" not in [row.label for row in hand.viewer.board.content.rows()]
 
 
 def test_a_small_picture_that_is_refused_is_black(tmp_path: Path) -> None:

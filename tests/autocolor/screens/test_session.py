@@ -200,11 +200,11 @@ def test_whatever_is_done_meanwhile_is_done_with_the_present_state(hand: Hand, n
 
 def test_handles_and_marks_of_the_present_light_are_not_there_meanwhile(hand: Hand) -> None:
     pick_row(hand, "lights")
-    screen = hand.viewer.board.screen
-    assert screen.handles()
+    board = hand.viewer.board
+    assert board.content.handles
     hand.press("b")
-    assert not screen.handles()
-    assert not screen.items()
+    assert not board.content.handles
+    assert not board.content.items
 
 
 def test_where_colors_alone_differ_no_word_does(hand: Hand) -> None:

@@ -27,7 +27,7 @@ from autocolor.screens.message_line import (
     lines_of_message,
     message_items,
 )
-from autocolor.screens.screen import Screen
+from autocolor.screens.screen import Content
 from autocolor.screens.session import LastEdit
 from autocolor.screens.tutorial import Tutorial
 from autocolor.screens.viewer import Viewer
@@ -74,12 +74,12 @@ def test_pages_are_turned_by_the_unit_the_wheel_and_keys(tmp_path: Path) -> None
         lambda: viewer.on_pointer(300, 200, "wheel down"),
         lambda: viewer.on_key("space", typed=" "),
     ):
-        shown.append(viewer.board.screen.items())
+        shown.append(viewer.board.content.items)
         turn()
     assert len({str(items) for items in shown}) == 3
     for _ in range(pages - 3):
         hand.click(300, 200)
-    assert viewer.board.screen.items() == shown[0]
+    assert viewer.board.content.items == shown[0]
 
 
 RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}
@@ -218,13 +218,9 @@ def test_numbers_begin_over_bars_alone(tmp_path: Path) -> None:
         hand.go_to("desk")
 
 
-def test_a_plain_screen_has_no_point_and_no_color(tmp_path: Path) -> None:
-    screen = Screen(desk_hand(tmp_path).viewer.session)
-    assert not screen.idle()
-    assert screen.sample(1, 1) is None
-    assert screen.color_at(1, 1) is None
+def test_a_screen_without_colors_refuses_to_take_a_color() -> None:
     with pytest.raises(UsageError, match=r"^this screen takes no color; turn to color mixing$"):
-        screen.take_color("red", 1, 1)
+        Content().take_color("red", 1, 1)
 
 
 def test_a_cached_value_is_computed_once_for_the_same_sources() -> None:
@@ -298,7 +294,7 @@ def test_every_screen_is_drawn_as_it_was(tmp_path: Path) -> None:
         for widget in board.widgets():
             items += widget.items(lit=True)
         # The rows of all pages of the menu, and their wide bars.
-        for row in rows_of_menu(viewer.session, screen, viewer.screens.values()):
+        for row in rows_of_menu(viewer.session, screen, board.content, viewer.screens.values()):
             for widget in laid_out([row]):
                 items += widget.items(lit=False)
             if isinstance(row, Bar):

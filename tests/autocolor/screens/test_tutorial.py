@@ -67,7 +67,7 @@ def drag_handle(label: str, number: int, right: int, down: int) -> Act:
     """Drag one of the handles of a label; each projection has its own."""
 
     def act(hand: Hand) -> None:
-        handles = [each for each in hand.viewer.board.screen.handles() if each.label.startswith(label)]
+        handles = [each for each in hand.viewer.board.content.handles if each.label.startswith(label)]
         element, line = handles[number].element, handles[number].line
         hand.drag((element, line), (element + right, line + down))
 

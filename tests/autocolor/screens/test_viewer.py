@@ -489,7 +489,7 @@ def test_the_picture_is_sent_once_when_a_viewer_opens(tmp_path: Path) -> None:
 def test_the_display_ends_with_the_present_picture_alone(hand: Hand) -> None:
     hand.press("c")
     hand.viewer.board.over = lambda: [Button("panel", area=Area(8, 8, 99, 23))]
-    handle = hand.viewer.board.layout.handles[0]
+    handle = hand.viewer.board.content.handles[0]
     hand.viewer.on_pointer(handle.element, handle.line, "move")
     hand.viewer.tell("")
     assert hand.hint.startswith("highlight of fill")

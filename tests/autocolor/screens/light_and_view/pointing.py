@@ -32,7 +32,8 @@ def opened(scene: Scene, shows_all: bool = True) -> Hand:
     hand = Hand(viewer)
     if shows_all:
         screen_of(hand).fit()
-    while viewer.board.screen.idle():
+        viewer.tell("")
+    while viewer.board.content.idle():
         pass
     viewer.tell("")
     return hand
@@ -47,7 +48,7 @@ def screen_of(hand: Hand) -> LightAndViewScreen:
 
 def handle_of(hand: Hand, movable: MovablePoint) -> Handle:
     """The first handle of something."""
-    return next(each for each in screen_of(hand).handles() if each.key == movable)
+    return next(each for each in hand.viewer.board.content.handles if each.key == movable)
 
 
 def place_of(hand: Hand, movable: MovablePoint) -> tuple[int, int]:

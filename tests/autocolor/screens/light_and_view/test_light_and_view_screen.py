@@ -448,7 +448,7 @@ def coupe() -> Hand:
 
 
 def signs_of(hand: Hand) -> list[Handle]:
-    return [each for each in screen_of(hand).handles() if not each.sign.is_empty]
+    return [each for each in hand.viewer.board.content.handles if not each.sign.is_empty]
 
 
 def test_lights_and_aims_that_are_close_together_are_told_apart_by_numerals(coupe: Hand) -> None:
@@ -524,7 +524,7 @@ def test_the_views_are_drawn_as_they_were() -> None:
     hand.press("escape")
     hand.pick("eye")
     hand.click(*MIDDLE)
-    while hand.viewer.board.screen.idle():
+    while hand.viewer.board.content.idle():
         pass
     note("the eye and the mesh")
     hand.pick("1 key", 0.3)

@@ -23,7 +23,7 @@ def click_with_shift(hand: Hand, element: int, line: int) -> None:
 
 
 def shown(hand: Hand) -> object:
-    return hand.viewer.board.screen.items()
+    return hand.viewer.board.content.items
 
 
 def expected(hand: Hand, line: int, element: int) -> object:

@@ -52,7 +52,7 @@ def undo(hand: Hand) -> None:
 def yellow(hand: Hand) -> set[tuple[int, int]]:
     """The lines and elements of the yellow pixels beside the menu and the light list."""
     found = np.argwhere(hand.display.words[: WORK.bottom + 1, : WORK.right + 1] == YELLOW)
-    listed = [widget.area for widget in hand.viewer.board.layout.beside]
+    listed = [widget.area for widget in hand.viewer.board.content.widgets]
     return {
         (line, element) for line, element in found.tolist() if not any(a.has(element, line) for a in listed)
     }
@@ -196,7 +196,7 @@ def near_rim(hand: Hand, rim: object, place: tuple[int, int]) -> bool:
 
 def test_each_pixel_of_a_rim_is_within_reach_of_a_handle(at_lights: Hand) -> None:
     hand = at_lights
-    handles = hand.viewer.board.screen.handles()
+    handles = hand.viewer.board.content.handles
     found = rims(hand.viewer.studio.sight, "key")
     assert set(found) == {"cone", ("z", "minimum")}
     for rim, pixels in found.items():
@@ -235,8 +235,8 @@ def test_the_marks_are_at_the_handles_and_leave_the_picture_as_it_was(at_lights:
     hand.pick("on", 0.95)
     assert not key(hand).on
     assert not yellow(hand)
-    assert not hand.viewer.board.screen.handles()
-    beside = np.s_[hand.viewer.board.layout.beside[-1].area.bottom + 1 : WORK.bottom + 1, : WORK.right + 1]
+    assert not hand.viewer.board.content.handles
+    beside = np.s_[hand.viewer.board.content.widgets[-1].area.bottom + 1 : WORK.bottom + 1, : WORK.right + 1]
     assert np.array_equal(hand.display.words[beside], studio.words[beside])
 
 
@@ -259,7 +259,7 @@ def test_a_coarse_picture_has_no_marks_until_the_movement_ends(
         hand.move(element, 420)
     assert hand.viewer.studio.is_coarse
     assert not yellow(hand)
-    assert not hand.viewer.board.screen.handles()
+    assert not hand.viewer.board.content.handles
     hand.drop()
     assert not hand.viewer.studio.is_coarse
     assert yellow(hand)
@@ -273,7 +273,7 @@ def test_without_a_menu_the_message_line_names_a_highlight_under_the_pointer_and
     hand.viewer.tell("")
     hand.move(20, 20)
     assert not yellow(hand)
-    assert [each.label for each in hand.viewer.board.screen.handles()] == [
+    assert [each.label for each in hand.viewer.board.content.handles] == [
         "highlight of fill",
         "highlight of key",
     ]
@@ -298,7 +298,7 @@ def test_the_lights_screen_marks_all_highlights_at_rest_and_the_chosen_one_is_ye
 
 
 def test_of_two_highlights_the_press_takes_the_light_that_shines_there_most(hand: Hand) -> None:
-    studio, screen = hand.viewer.studio, hand.viewer.board.screen
+    studio, board = hand.viewer.studio, hand.viewer.board
     element, line = PLACE
     for name in ("key", "fill"):
         studio.place_highlight(name, line, element)
@@ -312,8 +312,10 @@ def test_of_two_highlights_the_press_takes_the_light_that_shines_there_most(hand
         found = hand.viewer.board.handle_at(element, line)
         assert found is not None
         assert found.label == f"highlight of {strong}"
-        near = [each for each in screen.handles() if each.label.startswith("highlight")]
-        assert {each.label for each in screen.preferred(near, element, line)} == {x.label for x in near}
+        near = [each for each in board.content.handles if each.label.startswith("highlight")]
+        assert {each.label for each in board.content.preferred(near, element, line)} == {
+            x.label for x in near
+        }
 
 
 @pytest.mark.parametrize("held", [{"aside": REACH + 1}, {"shift": True}, {"control": True}, {"button": 2}])

@@ -69,7 +69,7 @@ def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
     before = session.scene
     show_other(hand.viewer)
     hand.move(600, 100)
-    assert hand.viewer.board.screen.hint(600, 100) == hand.viewer.board.screen.help
+    assert hand.viewer.board.content.hint(600, 100) == hand.viewer.board.screen.help
     hand.drag((600, 100), (500, 150))
     assert session.scene.view != before.view
     assert not session.news.is_warning
@@ -189,11 +189,11 @@ def test_it_stands_where_a_screen_has_room(tmp_path: Path, screen: str, left: in
     viewer = Viewer(boxes().with_scalar(name="z"), Ramtek9300(), tmp_path)
     viewer.session.turn_to(screen)
     viewer.tell("")
-    area = viewer.board.screen.items()[0].area
+    area = viewer.board.content.items[0].area
     assert left <= area.left <= area.right < right
     viewer.session.turn_to("blending")
     viewer.tell("")
-    assert not viewer.board.screen.items()
+    assert not viewer.board.content.items
 
 
 def color_seen(hand: Hand, element: int, line: int) -> tuple[int, ...]:

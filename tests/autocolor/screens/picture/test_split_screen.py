@@ -132,7 +132,7 @@ def test_nothing_is_sampled_from_borrowed_words(tmp_path: Path) -> None:
     split(hand)
     words = np.asarray(colors_on(hand)[..., 0])
     places = [(element, line) for line in range(0, len(words), 9) for element in range(0, 640, 9)]
-    assert not any(hand.viewer.board.screen.sample(*place) for place in places)
+    assert not any(hand.viewer.board.content.sample(*place) for place in places)
 
 
 def test_a_variant_is_split_as_it_is_compared(tmp_path: Path) -> None:

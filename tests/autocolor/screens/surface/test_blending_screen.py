@@ -124,17 +124,17 @@ def test_leaving_restores_words_and_entries_byte_for_byte(tmp_path: Path, count:
 
 def test_hidden_panels_take_the_bar_away_and_bring_the_legend(tmp_path: Path) -> None:
     hand = blending(boxes_scene().with_scalar(name="z", legend=True), tmp_path)
-    screen = hand.viewer.board.screen
-    assert not screen.items()
+    board = hand.viewer.board
+    assert not board.content.items
     hand.open_menu()
     hand.pick("hide panels")
     hand.move(20, 20)
     assert "blend level" not in {each.label for each in hand.viewer.board.widgets()}
-    assert screen.items()
+    assert board.content.items
     hand.open_menu()
     hand.pick("show panels")
     assert bar_of(hand)
-    assert not screen.items()
+    assert not board.content.items
 
 
 def test_a_ramp_has_no_blend_level(tmp_path: Path) -> None:
@@ -142,7 +142,7 @@ def test_a_ramp_has_no_blend_level(tmp_path: Path) -> None:
     hand.viewer.board.screen.enter()
     message = "box 0 has a ramp and no blend; change the ramp in color mixing"
     assert hand.message == message
-    assert not hand.viewer.board.screen.widgets()
+    assert not hand.viewer.board.content.widgets
     # The message comes back if the surface is chosen again, in the picture or in the menu.
     session = hand.viewer.session
     words, (first, levels) = hand.viewer.studio.words, hand.viewer.studio.level_ranges["box 0"]

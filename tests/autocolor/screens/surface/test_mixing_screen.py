@@ -261,7 +261,7 @@ def test_the_bar_between_says_that_a_scalar_hides_the_paint(tmp_path: Path) -> N
     heading = text(hidden, BLEND.right + 1 - CHARACTER * len(hidden), BLEND.top - 12 + TEXT_DOWN)
     for is_hidden, shown in ((False, scene), (True, scene.with_scalar(name="z", surfaces=["box 0"]))):
         hand = mixing(shown, tmp_path)
-        assert (heading in hand.viewer.board.screen.items()) == is_hidden
+        assert (heading in hand.viewer.board.content.items) == is_hidden
 
 
 def test_a_finish_replaces_a_ramp_and_another_surface_takes_it(hand: PaintingHand) -> None:
@@ -359,10 +359,10 @@ def test_pointing_at_the_picture_tells_the_level_or_the_other_surface(hand: Pain
     assert isinstance(screen, MixingScreen)
     element, line = place_in_picture(hand, "box 0")
     word = int(hand.display.words[line, element])
-    assert screen.hint(element, line) == f"box 0, level {word - first} of {levels - 1}"
+    assert hand.viewer.board.content.hint(element, line) == f"box 0, level {word - first} of {levels - 1}"
     there = place_in_picture(hand, "box 1")
-    assert screen.hint(*there) == "box 1: click to mix its colors; P: take its paint"
-    assert screen.hint(PICTURE.left, PICTURE.top) == screen.help
+    assert hand.viewer.board.content.hint(*there) == "box 1: click to mix its colors; P: take its paint"
+    assert hand.viewer.board.content.hint(PICTURE.left, PICTURE.top) == screen.help
     hand.click(*there)
     assert hand.viewer.session.surface_name == "box 1"
     assert hand.message == "surface box 1"
@@ -371,8 +371,8 @@ def test_pointing_at_the_picture_tells_the_level_or_the_other_surface(hand: Pain
 def test_a_scene_without_surfaces_in_use_says_so(tmp_path: Path) -> None:
     empty = scene_of(Mesh(np.zeros((0, 3)), np.zeros((0, 4), int)), name="empty")
     hand = mixing(empty, tmp_path)
-    assert [row.label for row in hand.viewer.board.screen.rows()] == []
-    assert hand.viewer.board.screen.hint(300, 300) == hand.viewer.board.screen.help
+    assert [row.label for row in hand.viewer.board.content.rows()] == []
+    assert hand.viewer.board.content.hint(300, 300) == hand.viewer.board.screen.help
     hand.press("p")
     assert hand.message == "no surface is under the pointer; point at it in the picture"
     hand.click(30, 60)
@@ -416,7 +416,7 @@ def test_the_unit_takes_the_paint_of_a_surface_that_it_picks_in_the_whole_pictur
     assert np.array_equal(hand.display.entries, entries)
     there = place_in_picture(hand, "box 1", shown)
     told = "pick the paint of box 1: #1e5ac8 and #ffffff, blend 0.70; Esc ends"
-    assert hand.viewer.board.screen.hint(*there) == told
+    assert hand.viewer.board.content.hint(*there) == told
     hand.click(*there)
     assert hand.paint == PAINTS[1]
     assert hand.message == "box 0: the paint of box 1; undo goes back"
@@ -434,7 +434,7 @@ def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand, title: str) ->
     element, line = place_in_picture(hand, "box 1", whole_picture(hand))
     red, green, blue = hand.colors(Area(element, line, element, line))[0, 0].tolist()
     color = red, green, blue
-    hint = hand.viewer.board.screen.hint(element, line)
+    hint = hand.viewer.board.content.hint(element, line)
     assert hint == f"pick {in_digits(color)} of box 1 as the {title} color; Esc ends"
     hand.click(element, line)
     assert (hand.paint.object_color if title == OBJECT else hand.paint.light_color) == color
