@@ -101,7 +101,7 @@ class Bar(Widget):
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
         value = self.number + ("" if self.flip is None else BESIDE_BOX)
-        items = self.labeled_row(lit, value)
+        items = self.row(lit, self.label, value)
         if self.flip is not None:
             items += box_items(self._box, self.value is not None, self.ink, background)
         track = self._track
