@@ -253,7 +253,7 @@ PAGES = {
     "light and view": 1797179940,
     "lights": 4228403333,
     "reflectance": 1517194685,
-    "mixing": 497174764_328_086_564,
+    "mixing": 497174764,
     "blending": 3452372454,
     "mapping": 3008507500,
     "scalar": 590852026,
