@@ -18,7 +18,7 @@ from autocolor.checks import Color
 from autocolor.scene.kinds import in_digits
 from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
-from autocolor.screens.main_menu import last_rows, rows_of_menu
+from autocolor.screens.main_menu import last_rows, strip_of
 from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items, offer_button
 from autocolor.screens.screen import Content, Handle, Sample, Screen, Surroundings, surface_at
 from autocolor.screens.session import PICTURE, Session
@@ -35,6 +35,7 @@ from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.letters import letter_panel
 from autocolor.widgets.menu import (
     MENU,
+    STRIP,
     NameList,
     Section,
     folded,
@@ -114,6 +115,11 @@ class Board:
         return self.screens[self.session.screen]
 
     @property
+    def names_in_strip(self) -> list[str]:
+        """The names of the screens that have a word in the strip, from the left."""
+        return [name for name, screen in self.screens.items() if screen.word]
+
+    @property
     def has_menu(self) -> bool:
         """Whether the menu is shown."""
         return not self._comes_and_goes or self._is_open or self.is_pinned
@@ -146,7 +152,8 @@ class Board:
             content = self.screen.build(self._surroundings(has_menu, over))
             rows = self._menu_rows(content) if has_menu else ()
             offer = offer_button(session.news.offer) if session.has_news and not self.typing.is_on else None
-            self._layout = state, Layout(content, rows, over, offer, self._opened, self._list_of)
+            strip = strip_of(session, self.screens.values()) if has_menu else ()
+            self._layout = state, Layout(content, rows, strip, over, offer, self._opened, self._list_of)
         return self._layout[1]
 
     @property
@@ -157,7 +164,7 @@ class Board:
     def _surroundings(self, has_menu: bool, over: Sequence[Widget]) -> Surroundings:
         """The menu, the panels and the pointer, for the screen that is shown."""
         message = (item.area for item in self._message)
-        above = (*([MENU] if has_menu else []), *(widget.area for widget in over), *message)
+        above = (*((MENU, STRIP) if has_menu else ()), *(widget.area for widget in over), *message)
         is_covered = any(area.has(*self._pointer) for area in above)
         pointer = Place(-1, -1) if is_covered else self._pointer
         return Surroundings(has_menu, not self.hides_panels, self._lit, pointer)
@@ -168,7 +175,7 @@ class Board:
 
     def _menu_rows(self, content: Content) -> list[Widget]:
         """The rows of this page of the menu, laid out."""
-        rows = rows_of_menu(self.session, self.screen, content, self.screens.values())
+        rows = list(content.rows())
         last = [*last_rows(self.session, self.screen), *self._hiding_rows(content)]
         folds = self._folds.get(self.session.screen, {})
         rows = folded(rows, folds, self._fold, MENU.height - lines_of(last))
@@ -269,7 +276,7 @@ class Board:
         self.screens[wanted].enter()
         # Without a menu beside it, the screen itself must say what to do, and the way back.
         screen = self.screen
-        is_reached_by_menu = screen.is_in_menu and screen.name != PICTURE
+        is_reached_by_menu = screen.word and screen.name != PICTURE
         if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
             self.session.tell(f"{screen.help}; the right edge: the menu")
         return True
@@ -357,7 +364,7 @@ class Board:
             was_open = self._is_open
             if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
                 self._is_open = True
-            elif not MENU.left <= element < WIDTH and self.layout.opened_row is None:
+            elif not (MENU.has(element, line) or STRIP.has(element, line)) and self.layout.opened_row is None:
                 # A row that has gone leaves its list to be opened again.
                 self._is_open, self._opened = False, ""
             if self._is_open and not was_open and self.session.news.persistent:
@@ -561,6 +568,8 @@ class Board:
             items += widget.items(widget is lit and not widget.why_not)
         if layout.rows:
             items += menu_items(layout.rows, lit)
+        for word in layout.strip:
+            items += word.items(word is lit)
         if layout.wide is not None:
             items += layout.wide.items(lit=False)
         if layout.listed is not None:

@@ -74,8 +74,8 @@ LESSONS: Final = (
     Lesson(
         "move a light",
         (
-            "The right edge brings the menu: pick light & view there. Drag a light",
-            "in one of the views. Or pick it, and then its new place in that view.",
+            "The right edge brings the menu: pick views above it. Drag a light in",
+            "one of the views. Or pick it, and then its new place in that view.",
         ),
         edited("lights", lambda light: [light.position]),
     ),
@@ -98,8 +98,8 @@ LESSONS: Final = (
     Lesson(
         "mix a color",
         (
-            "Paint the car: pick < picture, pick the body, then color mixing in",
-            "the menu. Drag its bars, or pick one of the paints in the menu.",
+            "Paint the car: pick picture at the top, pick the body, then colors at",
+            "the top. Drag the bars, or pick one of the paints in the menu.",
         ),
         edited("surfaces", lambda row: [row.paint.object_color, row.paint.light_color, row.paint.ramp]),
     ),
@@ -114,7 +114,7 @@ LESSONS: Final = (
     Lesson(
         "save",
         (
-            "Pick < picture, then file, and save there: the message line says the",
+            "Pick file at the top, and save there: the message line tells you the",
             "names of the files that hold the scene and the picture.",
         ),
         is_saved,

@@ -32,8 +32,8 @@ from ramtek_emu import instructions
 # entries                       all, each in its cell                            none
 # sent, help                    SCREENS                                          none
 #
-# A screen borrows entries by `Content.loads` alone. A sheet loads the entries that differ from the page before,
-# and draws what another base or item shows. So the next page restores what a screen borrowed or covered.
+# A screen borrows entries by `Content.loads` alone. A sheet loads the entries that differ from the page
+# before, and writes the words of another base. So the next page restores what a screen borrowed or covered.
 
 WIDTH: Final = 640
 HEIGHT: Final = 480
