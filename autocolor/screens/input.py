@@ -127,16 +127,8 @@ class Chord:
 
     def __str__(self) -> str:
         modifiers = ["Ctrl"] * self.control + ["Shift"] * self.shift + ["Alt"] * self.alt
-        names = {
-            "escape": "Esc",
-            "up": "Up",
-            "down": "Down",
-            "left": "Left",
-            "right": "Right",
-            "space": "Space",
-            "tab": "Tab",
-        }
-        return "+".join([*modifiers, names.get(self.name, self.name.upper())])
+        name = "Esc" if self.name == "escape" else self.name.capitalize()
+        return "+".join([*modifiers, name])
 
 
 @dataclass(frozen=True)

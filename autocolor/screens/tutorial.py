@@ -82,7 +82,7 @@ LESSONS: Final = (
     Lesson(
         "flaps",
         (
-            "Keep a light from a part of the car: in this menu or in lights,",
+            "Keep a light from a part of the car: in the menu of views or lights,",
             "switch on one of the flaps x, y and z, and set where it ends.",
         ),
         edited("lights", cutting_flaps),
@@ -106,8 +106,8 @@ LESSONS: Final = (
     Lesson(
         "blend",
         (
-            "Pick < picture, then light blending, and drag the handle of the bar:",
-            "above the handle, the body takes the color of the light.",
+            "Pick blend at the top, and drag the handle of the bar: above the",
+            "handle, the body takes the color of the light.",
         ),
         edited("surfaces", lambda row: [row.paint.blend]),
     ),
