@@ -306,7 +306,7 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     ),
 )
 WINDOW_KEYS: Final = (
-    ("F3", "record the window as a film; again: end it"),
+    ("F3", "record the window as a film, with a red mark; again: end it"),
     ("F10", "fill the window, or show whole multiples"),
     ("F11, Alt+Enter", "full screen, and back"),
     ("Ctrl+Q", "leave; you are asked first about unsaved changes"),
