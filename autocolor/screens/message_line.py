@@ -10,7 +10,6 @@ from textwrap import wrap
 from typing import Final, NamedTuple
 
 from autocolor.screens.session import Offer, Session
-from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER,
@@ -23,7 +22,7 @@ from autocolor.widgets.items import (
     text,
 )
 from autocolor.widgets.menu import MESSAGE_CHARACTERS, MESSAGE_LINES
-from autocolor.widgets.widget import MARGIN, PanelButton, Typed, Widget
+from autocolor.widgets.widget import MARGIN, Entry, PanelButton, Widget
 
 MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
 LINE_STEP: Final = 12
@@ -86,7 +85,7 @@ def offer_button(offer: Offer | None) -> Widget | None:
 
 
 NUMBERS: Final = "0123456789.-+"
-"""The characters that begin a number."""
+"""The characters that begin a number, and so begin typing over a bar."""
 
 
 class TypingLine:
@@ -94,8 +93,7 @@ class TypingLine:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._label = ""
-        self._typed: Typed | None = None
+        self._entry: Entry | None = None
         self._is_fresh = False
         """Whether the text is selected: the next character replaces it."""
         self.text = ""
@@ -104,7 +102,7 @@ class TypingLine:
     @property
     def is_on(self) -> bool:
         """Whether a text is being typed."""
-        return self._typed is not None
+        return self._entry is not None
 
     @property
     def is_by_letters(self) -> bool:
@@ -114,20 +112,15 @@ class TypingLine:
     @property
     def shown(self) -> MessagePart:
         """The text for the message line."""
-        label = f"{self._label}: "
+        label = f"{self._entry.label}: " if self._entry else ""
         if self._is_fresh and self.text:
             return MessagePart(label + self.text, YELLOW, len(label))
         line = f"{label}{self.text}_"
         return MessagePart(line, YELLOW, len(line))
 
-    def would_begin(self, widget: Widget, typed: str) -> bool:
-        """Whether typing a character over a widget begins to type into it."""
-        return isinstance(widget, Bar) and not widget.why_not and typed != "" and typed in NUMBERS
-
-    def begin(self, widget: Widget, typed: str = "") -> None:
-        """Begin with a character, or with the widget's text, which the first character replaces."""
-        self._typed, self._label, self._is_fresh = widget.typed, widget.label, not typed
-        self.text = typed or (self._typed.text if self._typed else "")
+    def begin(self, entry: Entry, typed: str = "") -> None:
+        """Begin with a character, or with the entry's text, which the first character replaces."""
+        self._entry, self.text, self._is_fresh = entry, typed or entry.value, not typed
 
     def insert(self, text: str) -> None:
         """Append a text, or replace the selected text by it."""
@@ -135,19 +128,19 @@ class TypingLine:
 
     def end(self) -> None:
         """End typing without taking the text."""
-        self._typed = None
+        self._entry = None
 
     def take(self) -> None:
         """Take the text if it was changed or proposed. A refused text raises an error and stays, selected."""
-        typed = self._typed
-        if typed is not None and (typed.is_proposed or self.text != typed.text):
+        entry = self._entry
+        if entry is not None and (entry.is_proposed or self.text != entry.value):
             self._is_fresh = True
-            typed.take(self.text)
+            entry.take(self.text)
         self.end()
 
     def leave(self) -> None:
         """Take the text as `take` does, but give up a text that was proposed."""
-        if self._typed is not None and self._typed.is_proposed:
+        if self._entry is not None and self._entry.is_proposed:
             self.end()
         self.take()
 

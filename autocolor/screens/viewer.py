@@ -180,7 +180,8 @@ class Viewer:
         self.session.has_keyboard = True
         if action == "press" and self._watching.end():
             self._update()
-        for gesture in self._mouse.gestures(element, line, action, button, steps, shift, control):
+        place = Gesture("hover", element, line, button, float(steps), shift, control)
+        for gesture in self._mouse.gestures(action, place):
             self.point(gesture)
 
     def poll(self) -> None:

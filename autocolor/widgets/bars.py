@@ -41,8 +41,8 @@ from autocolor.widgets.widget import (
     MARGIN,
     ROW_LINES,
     TEXT_DOWN,
+    Entry,
     Place,
-    Typed,
     Widget,
     box_items,
 )
@@ -73,8 +73,9 @@ class Bar(Widget):
     """The color of the bar."""
 
     @property
-    def typed(self) -> Typed:
-        return Typed("" if self.value is None else f"{self.value:.9g}", self._take)
+    def entry(self) -> Entry:
+        """The number as a text that can be typed over."""
+        return Entry(self.label, value="" if self.value is None else f"{self.value:.9g}", take=self._take)
 
     def _take(self, line: str) -> object:
         try:

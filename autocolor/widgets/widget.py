@@ -58,17 +58,6 @@ class Place(NamedTuple):
     line: int
 
 
-class Typed(NamedTuple):
-    """The text of a widget that can be typed over, and the function that takes the new text.
-
-    If it `is_proposed`, Return takes the text even if it was not changed, and a pick elsewhere gives it up.
-    """
-
-    text: str
-    take: Callable[[str], object]
-    is_proposed: bool = False
-
-
 @dataclass(frozen=True)
 class Widget:
     """Something to point at. With a reason in `why_not` it is dim and cannot be used."""
@@ -98,11 +87,6 @@ class Widget:
     def row_lines(self) -> int:
         """Its height in a menu."""
         return ROW_LINES
-
-    @property
-    def typed(self) -> Typed | None:
-        """The text that can be typed over; None if there is none."""
-        return None
 
     def has(self, element: int, line: int) -> bool:
         """Whether a place belongs to the widget."""
@@ -368,14 +352,22 @@ def page_choice(
 
 @dataclass(frozen=True)
 class Entry(Button):
-    """A text that can be typed over; see `Typed` for a text that is proposed."""
+    """A text that can be typed over; `take` is called with the new text.
+
+    If it `is_proposed`, Return takes the text even if it was not changed, and a pick elsewhere gives it up.
+    """
 
     take: Callable[[str], Any] = lambda _: None
     is_proposed: bool = False
 
-    @property
-    def typed(self) -> Typed:
-        return Typed(self.value, self.take, self.is_proposed)
+
+class Word(NamedTuple):
+    """A button of a row with several: its text, and whether a pick on it does anything; else it is dim."""
+
+    text: str
+    run: Callable[[], object]
+    is_on: bool = True
+    is_chosen: bool = False
 
 
 @dataclass(frozen=True)
@@ -388,37 +380,42 @@ class Pair(Widget):
     is_chosen: bool = False
     """Whether the left button is chosen."""
 
-    def items(self, lit: bool) -> list[Item]:
-        background = SLATE if lit else NIGHT
-        middle = self._middle
-        items = self.row(
-            lit,
-            fitted(self.label, (middle - self.area.left - MARGIN) // CHARACTER - 1),
-            chosen=self.is_chosen,
-        )
-        edge, top = middle - MARGIN // 2, self.area.top + TEXT_DOWN
-        if self.is_chosen:
-            items.append(filled(self.area._replace(left=edge), background))
-        other = fitted(self.other, (self.area.right + 1 - middle) // CHARACTER)
-        between = Area(edge, top, edge, top + CHARACTER_LINES - 1)
-        return [
-            *items,
-            filled(between, GRAY if lit else SLATE),
-            text(other, middle, top, self.ink, background),
-        ]
+    @property
+    def words(self) -> Sequence[Word]:
+        """The buttons, from the left."""
+        is_on = not self.why_not
+        return Word(self.label, self.run, is_on, self.is_chosen), Word(self.other, self.run_other, is_on)
 
     @property
-    def _middle(self) -> int:
-        """Where the right button begins: in the middle, or a letter after it if the left label is long."""
-        left = self.area.left + MARGIN
-        middle = left + (self.area.width - MARGIN) // 2
-        return min(max(middle, left + CHARACTER * (len(self.label) + 1)), middle + CHARACTER)
+    def _edges(self) -> list[int]:
+        """Where each button begins: at equal distances, or after the word before if that is longer."""
+        edges, words = [self.area.left], self.words
+        for number, before in enumerate(words[:-1], start=1):
+            least = edges[-1] + MARGIN + CHARACTER * len(before.text) + MARGIN - 2
+            edges.append(max(least, self.area.left + number * (self.area.width - MARGIN) // len(words)))
+        return edges
+
+    def items(self, lit: bool) -> list[Item]:
+        ground, edges = SLATE if lit else NIGHT, self._edges
+        items = [filled(self.area, ground)]
+        for word, left, end in zip(self.words, edges, [*edges[1:], self.area.right + 1], strict=True):
+            area = Area(left, self.area.top, end - 1, self.area.bottom)
+            line = Area(left, area.top + TEXT_DOWN, left, area.top + TEXT_DOWN + CHARACTER_LINES - 1)
+            if word.is_chosen:
+                items.append(filled(area, WHITE))
+            elif left > self.area.left:
+                items.append(filled(line, GRAY if lit else SLATE))
+            ink = BLACK if word.is_chosen else WHITE if word.is_on else GRAY
+            back = WHITE if word.is_chosen else ground
+            items.append(text(word.text, left + MARGIN, line.top, ink, back))
+        return items
 
     def pick(self, place: Place) -> object:
-        return self.run_other() if place.element >= self._middle - MARGIN // 2 else self.run()
+        number = sum(place.element >= edge for edge in self._edges[1:])
+        return self.words[number].run()
 
     def nudge(self, steps: float) -> object:
-        return self.run_other() if steps > 0 else self.run()
+        return self.words[-1 if steps > 0 else 0].run()
 
 
 STEM_LETTERS: Final = 3

@@ -212,9 +212,9 @@ def test_switches_choices_and_texts_put_their_values(table: Table) -> None:
     for label, typed in (("name", "sun"), ("tint", "#00f")):
         entry = table.rows()[label]
         assert isinstance(entry, Entry)
-        assert entry.typed.text == {"name": "lamp", "tint": "#ff0000"}[label]
-        assert not entry.typed.is_proposed
-        entry.typed.take(typed)
+        assert entry.value == {"name": "lamp", "tint": "#ff0000"}[label]
+        assert not entry.is_proposed
+        entry.take(typed)
     lamp = table.lamp
     assert (lamp.on, lamp.mode, lamp.name, lamp.tint) == (False, "narrow", "sun", (0, 0, 255))
 
