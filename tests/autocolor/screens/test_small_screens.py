@@ -283,7 +283,7 @@ def test_every_screen_is_drawn_as_it_was(tmp_path: Path) -> None:
     entries = instructions.load_entries(1, [(number, 0, 7) for number in range(60)])
     edit = LastEdit(viewer.studio.scene, after, entries, 1234)
     board = viewer.board
-    board.is_pinned = True
+    board.menu.is_pinned = True
     pages = {}
     for name in viewer.screens:
         viewer.session.turn_to(name)
