@@ -1,11 +1,9 @@
 from __future__ import annotations
 
 import io
-import itertools
 import re
 from collections.abc import Callable
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -19,11 +17,12 @@ from autocolor.images import display_image
 from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.message_line import MESSAGE
-from autocolor.screens.sent_screen import CHARACTERS, ROWS_A_PAGE, ListingRow, rows_of_edit
+from autocolor.screens.pages import CHARACTERS, LEFT, TOP, TextRow
+from autocolor.screens.sent_screen import rows_of_edit
 from autocolor.screens.session import LastEdit
 from autocolor.screens.variants_screen import ELEMENTS, FRAME, LINES, ON_PAGE, PLACES
 from autocolor.screens.viewer import Viewer
-from autocolor.widgets.items import SCREEN, text
+from autocolor.widgets.items import text
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import GMR_9300, PRINCETON_9300, Ramtek9300, Recorder, instructions
@@ -85,12 +84,11 @@ def last_edit(viewer: Viewer) -> LastEdit:
 
 def names_in(words: Words) -> list[str]:
     """The names of the instructions of a stream that has nothing else."""
-    listed = list(items([words.astype("<u2").tobytes()]))
-    assert all(item.instruction is not None for item in listed)
-    return [item.instruction.format.name for item in listed if item.instruction is not None]
+    listed = [item.instruction for item in items([words.astype("<u2").tobytes()])]
+    return [instruction.format.name for instruction in listed if instruction is not None]
 
 
-def listing_of(words: Words) -> list[ListingRow]:
+def listing_of(words: Words) -> list[TextRow]:
     """The rows below the table of shares."""
     rows = rows_of_edit(LastEdit(SCENE, SCENE, words, 0), GMR_9300)
     return rows[max(number for number, row in enumerate(rows) if not row.text) + 1 :]
@@ -189,26 +187,6 @@ def test_a_listing_that_is_whole_assembles_to_the_words(colors: list[tuple[int, 
     assert b"".join(assemble(lines)) == words.astype("<u2").tobytes()
 
 
-def test_the_pages_have_every_row_once_and_nothing_overlaps(recorded: Recorded) -> None:
-    viewer = recorded.viewer
-    recorded.edit(EDITS["view"](SCENE))
-    rows = rows_of_edit(last_edit(viewer), GMR_9300)
-    viewer.on_key("f2")
-    count = -(-len(rows) // ROWS_A_PAGE)
-    assert count > 1
-    shown = []
-    for _ in range(count):
-        page = viewer.board.content.items
-        shown += [item.stream for item in page]
-        for one, other in itertools.combinations(page, 2):
-            assert not one.area.overlaps(other.area)
-        assert all(SCREEN.covers(item.area) and not MESSAGE.overlaps(item.area) for item in page)
-        viewer.on_key("space", typed=" ")
-    for number, row in enumerate(rows):
-        top = 50 + 13 * (number % ROWS_A_PAGE)
-        assert not row.text or text(row.text, 8, top, row.ink).stream in shown
-
-
 def test_an_edit_of_colors_on_the_screen_is_listed_there(recorded: Recorded) -> None:
     viewer = recorded.viewer
     viewer.on_key("f2")
@@ -219,7 +197,7 @@ def test_an_edit_of_colors_on_the_screen_is_listed_there(recorded: Recorded) -> 
     Sheet(whole).show(viewer.board.page())
     assert np.array_equal(recorded.display.words, whole.words)
     row = rows_of_edit(last_edit(viewer), GMR_9300)[0]
-    assert text(row.text, 8, 50, row.ink) in viewer.board.page().items
+    assert text(row.text, LEFT, TOP, row.ink) in viewer.board.page().items
 
 
 @given(st.integers(1, 30), st.integers(1, 300), st.integers(0, 2**32 - 1))
@@ -262,35 +240,30 @@ def rest(hand: Hand) -> None:
 
 def shown_at(hand: Hand, place: int) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
     """The colors of a small picture on the display."""
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
     left, top = PLACES[place].left + FRAME, PLACES[place].top + FRAME
-    return display.field()[top : top + LINES, left : left + ELEMENTS].astype(np.int64)
+    return hand.display.field()[top : top + LINES, left : left + ELEMENTS].astype(np.int64)
 
 
 def names(hand: Hand) -> list[str]:
     return [each.label for each in hand.viewer.board.content.widgets]
 
 
-def test_without_a_variant_there_is_nothing_to_come_back_to(hand: Hand) -> None:
+def test_a_scene_is_kept_and_come_back_to_in_one_step(hand: Hand) -> None:
     for label in ("come back", "drop"):
         hand.pick(label)
         assert told(hand) == (f"{label}: no variant is kept yet", True)
-
-
-def test_a_scene_is_kept_and_come_back_to_in_one_step(hand: Hand) -> None:
-    kept = hand.viewer.studio.scene
+    kept = hand.scene
     hand.pick("keep")
     assert told(hand) == ("kept as A", False)
     hand.viewer.studio.recolor("low", object_color="#123456")
-    changed = hand.viewer.studio.scene
+    changed = hand.scene
     hand.pick("come back")
-    assert hand.viewer.studio.scene.equals(kept)
+    assert hand.scene.equals(kept)
     assert told(hand) == ("A is the scene again; undo goes back", False)
-    assert hand.viewer.session.screen == "picture"
+    assert hand.viewer.page == "picture"
     hand.open_menu()
     undo(hand)
-    assert hand.viewer.studio.scene is changed
+    assert hand.scene is changed
 
 
 def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
@@ -314,11 +287,15 @@ def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -
         assert (list(hand.viewer.studio.variants), told(hand)[1]) == (["red"], is_in_use)
 
 
-@pytest.mark.parametrize("number", first(1, [4, 1, ON_PAGE]))
-def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) -> None:
+@pytest.mark.parametrize("number", first(1, [ON_PAGE, 1, 4]))
+def test_small_pictures_have_true_colors_all_at_once_in_words_of_their_own(hand: Hand, number: int) -> None:
     keep(hand, number)
     rest(hand)
     assert all(WORK.covers(place) for place in PLACES)
+    loads = hand.viewer.board.content.loads
+    ends = [0, *(first + len(colors) - 1 for first, colors in loads)]
+    assert all(before < first for before, (first, _) in zip(ends, loads, strict=False))
+    assert ends[-1] < SCREENS.first
     for place in {0, number - 1}:
         scene = list(hand.viewer.studio.variants.values())[place].scene
         picture = render(scene, (2 * ELEMENTS, 2 * LINES))
@@ -330,50 +307,36 @@ def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) ->
 
 def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
     keep(hand, 3)
-    assert len(hand.viewer.board.content.items) == 0
-    for number in (1, 2, 3, 3):
+    counts = [len(hand.viewer.board.content.items)]
+    for _ in range(4):
         hand.viewer.on_tick()
-        assert len(hand.viewer.board.content.items) == number
+        counts.append(len(hand.viewer.board.content.items))
+    assert counts == [0, 1, 2, 3, 3]
     assert not hand.viewer.board.content.idle()
     hand.pick("drop")
     hand.turn_to("picture")
     assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
-    # When the screen is back, those of kept variants still stand, and that of the dropped one is gone.
+    # When the screen is back, the pictures of kept variants still stand.
     hand.turn_to("variants")
     assert len(hand.viewer.board.content.items) == 2
     hand.pick("keep")
-    assert len(hand.viewer.board.content.items) == 2
     assert hand.viewer.board.content.idle()
     assert not hand.viewer.board.content.idle()
-
-
-def test_the_words_of_the_menu_keep_their_entries(hand: Hand) -> None:
-    keep(hand, ON_PAGE)
-    rest(hand)
-    loads = hand.viewer.board.content.loads
-    assert len(loads) == ON_PAGE
-    ends = [(first, first + len(colors)) for first, colors in loads]
-    assert all(end <= following for (_, end), (following, _) in pairwise(ends))
-    assert ends[0][0] > 0
-    assert ends[-1][1] <= SCREENS.first
 
 
 def test_many_variants_have_pages(hand: Hand) -> None:
     keep(hand, ON_PAGE + 3)
     assert len(names(hand)) == 3
-    assert hand.widget("page").present == "2 of 2"  # type: ignore[attr-defined]
-    # It opens at the page of the last variant.
     hand.pick("page")
+    assert len(names(hand)) == ON_PAGE
+    # The screen opens at the page of the last variant.
     hand.turn_to("picture")
     hand.turn_to("variants")
     assert len(names(hand)) == 3
-    hand.pick("page")
-    assert len(names(hand)) == ON_PAGE
-    hand.pick("page")
     for _ in range(3):
         hand.pick("drop")
     assert len(names(hand)) == ON_PAGE
-    assert "page" not in [row.label for row in hand.viewer.board.content.rows()]
+    assert "page" not in hand.labels
 
 
 def test_a_small_picture_that_is_refused_is_black(tmp_path: Path) -> None:
