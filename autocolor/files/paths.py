@@ -61,8 +61,8 @@ def check_stem(name: str) -> None:
     """
     if file_stem(name) != name or name.startswith(".") or not name.isprintable():
         raise UsageError(
-            f"a file name must be 1 to {LONGEST_STEM} characters, with none of {''.join(sorted(REFUSED))} and"
-            f" no period or space first, not {shown(name)}; choose another"
+            f"a name must be 1 to {LONGEST_STEM} characters, none of {''.join(sorted(REFUSED))}, no period or"
+            f" space first, not {shown(name)}; choose another"
         )
 
 

@@ -118,8 +118,8 @@ class FilesOnDisk:
     def guard(self, path: Path) -> Callable[[], None]:
         """Refuse to overwrite a file that another program changed since (see `Guard`). Raises OutputError."""
         refusal = OutputError(
-            f"an output must be as the studio last read or saved it, and another program changed {path}; read"
-            " it with reopen(), or with open() if it is not the scene's own file, or choose another name"
+            f"an output must be as last read or saved, and another program changed {path}; read it by"
+            " reopen() or open(), or choose another name"
         )
         numbers, name = numbers_of(path), os.path.abspath(path)
 

@@ -108,7 +108,7 @@ def test_a_name_that_a_file_has_is_refused_and_nothing_is_written(
 @pytest.mark.parametrize("name", ["", "a/b"])
 def test_an_invalid_name_is_refused_and_nothing_is_written(work: Path, name: str) -> None:
     studio = Studio(car(), Ramtek9300(SMALL))
-    with pytest.raises(UsageError, match="a file name must be"):
+    with pytest.raises(UsageError, match="a name must be"):
         studio.save_session(work, name)
     assert not list(work.parent.rglob("*.npz"))
     assert list(work.iterdir()) == []
