@@ -40,6 +40,7 @@ from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image, save_image
 from autocolor.journal.history import History, Move, Show, is_picture
 from autocolor.journal.places import NO_STAMP, Source, opened
+from autocolor.journal.timeline import have_one_look
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
@@ -399,13 +400,19 @@ class Studio(Suggesting):
     ) -> None:
         """Read a scene (see `read_scene`) and make it the current one, by one step to undo.
 
-        Undo also brings back the files to which `save_session` saves. The script of a session gives the
-        `tables` that the scene had, because the file may have been saved over since, and the `checksum` of
-        the scene. Raises InputError if the scene has another checksum.
+        If it is the file of the current scene and still has its look, there is no step: the view alone
+        becomes that of the file. Undo also brings back the files to which `save_session` saves. The script of
+        a session gives the `tables` that the scene had, because the file may have been saved over since, and
+        the `checksum` of the scene. Raises InputError if the scene has another checksum.
         """
         source = Source(fspath(path), up, surfaces, scale)
         with allowing(self._limit):
             scene = opened(source, tables, checksum, (self._history.on_disk.scene_of(source),))
+        place = self._history.place
+        is_same_file = source == place.source or (place.file is not None and place.file == scene.place.file)
+        if is_same_file and have_one_look(scene.scene, self.scene):
+            self.edit(self.scene.replace(view=scene.scene.view))
+            return
         self._show_scene(scene.scene, lambda: self._history.open(scene, source))
 
     @property
