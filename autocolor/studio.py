@@ -39,7 +39,7 @@ from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image, save_image
 from autocolor.journal.history import History, Move, Show, is_picture
-from autocolor.journal.places import NO_STAMP, Source, opened
+from autocolor.journal.places import NO_STAMP, Source, opened, resolved
 from autocolor.journal.timeline import have_one_look
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
@@ -406,10 +406,11 @@ class Studio(Suggesting):
         the `checksum` of the scene. Raises InputError if the scene has another checksum.
         """
         source = Source(fspath(path), up, surfaces, scale)
+        before = self._history.place.source
+        is_same_file = before is not None and resolved(before) == resolved(source)
+        known = self.scene if is_same_file else None, self._history.on_disk.scene_of(source)
         with allowing(self._limit):
-            scene = opened(source, tables, checksum, (self._history.on_disk.scene_of(source),))
-        place = self._history.place
-        is_same_file = source == place.source or (place.file is not None and place.file == scene.place.file)
+            scene = opened(source, tables, checksum, known)
         if is_same_file and have_one_look(scene.scene, self.scene):
             self.edit(self.scene.replace(view=scene.scene.view))
             return

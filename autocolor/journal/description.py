@@ -184,9 +184,9 @@ def _changes_of_value(
         if other is None:
             yield ColumnChange(f"no {label}")
             return
-        changes = list(_changes(one, other, path if kind.inline else f"{label} "))
+        inner = list(_changes(one, other, path if kind.inline else f"{label} "))
         # A new row may have the defaults in all columns.
-        yield from changes or [ColumnChange(f"{label} on")]
+        yield from inner or [ColumnChange(f"{label} on")]
     elif isinstance(kind, OneRowOf):
         is_same_class = type(one) is type(other)
         if not is_same_class:

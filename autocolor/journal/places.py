@@ -185,6 +185,11 @@ def file_of(source: Source) -> Path | None:
     return path if path.suffix.lower() in (".toml", PICTURE_SUFFIX, *STORE_SUFFIXES) else None
 
 
+def resolved(source: Source) -> Source:
+    """The source with the absolute path of its file."""
+    return source._replace(path=os.path.abspath(file_of(source) or source.path))
+
+
 def checksum_of(scene: Scene) -> str:
     """The SHA-256 of all values of a scene, its mesh and scalars included, in hexadecimal digits."""
     plain = plain_scene(scene)

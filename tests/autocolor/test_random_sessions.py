@@ -116,9 +116,9 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
             assert is_whole, f"on the screen {viewer.page}, gesture {number}"
     hand.let_go()
     viewer.clear()
-    studio, steps = viewer.studio, viewer.studio.history
+    studio = viewer.studio
     # An edit without a change is no step.
-    states = (*steps.to_undo, steps.scene, *reversed(steps.to_redo))
+    states = (*studio.history.to_undo, studio.scene, *reversed(studio.history.to_redo))
     assert all(describe_look(before, after) for before, after in pairwise(states))
     assert viewer.page == PICTURE
     last = held(display)
