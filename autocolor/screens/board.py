@@ -32,6 +32,7 @@ from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
+    NIGHT,
     ORANGE,
     WHITE,
     WIDTH,
@@ -521,6 +522,7 @@ class Board:
             items += widget.items(widget is lit and not widget.why_not)
         if layout.rows:
             items += menu_items(layout.rows, lit)
+            items.append(filled(STRIP, NIGHT))
         for word in layout.strip:
             items += word.items(word is lit)
         if layout.wide is not None:

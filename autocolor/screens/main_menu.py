@@ -31,7 +31,7 @@ def strip_of(session: Session, screens: Iterable[Screen]) -> list[Widget]:
     return [
         PanelButton(
             each.word,
-            f"{each.title}: {each.help}",
+            f"{each.title}, Ctrl+{(number + 1) % 10}: {each.help}",
             within="strip",
             area=STRIP._replace(left=width * number, right=width * (number + 1) - 1),
             run=partial(session.turn_to, each.name),

@@ -343,7 +343,7 @@ def test_the_first_message_stands_until_the_menu_comes_or_something_is_done(
     hand.move(100, 100)
     assert hand.hint == welcome
     hand.move(638, 8)
-    assert hand.hint == f"file: {hand.viewer.screens['file'].help}"
+    assert hand.hint == f"file, Ctrl+0: {hand.viewer.screens['file'].help}"
     hand.viewer.tell(welcome, persistent=True)
     hand.press("c")
     assert hand.message != welcome
