@@ -35,7 +35,6 @@ from autocolor.widgets.items import (
     Item,
     SmallPicture,
     filled,
-    fitted,
     outline,
     text,
 )
@@ -47,8 +46,10 @@ from autocolor.widgets.widget import (
     Entry,
     Gap,
     Pair,
+    Place,
     Widget,
     page_choice,
+    short_name,
 )
 
 LINES: Final = 84
@@ -95,52 +96,67 @@ class VariantsScreen(Screen):
         """The rendering of the last small picture; the next rendering reuses what did not change."""
         self._small: dict[Scene, SmallPicture] = {}
 
+    # The small pictures.
+
     @property
+    def _pages(self) -> list[list[str]]:
+        """The names of the variants, page by page; one page if there are none."""
+        names = list(self.session.studio.variants)
+        return [names[first : first + ON_PAGE] for first in range(0, len(names), ON_PAGE)] or [[]]
+
     def _names(self) -> list[str]:
         """The variants of this page."""
-        first = ON_PAGE * self._page
-        return list(self.session.studio.variants)[first : first + ON_PAGE]
+        pages = self._pages
+        return pages[min(self._page, len(pages) - 1)]
 
-    @property
     def _scenes(self) -> list[Scene]:
         """The scenes of this page."""
-        return [self.session.studio.variants[name].scene for name in self._names]
+        return [self.session.studio.variants[name].scene for name in self._names()]
 
-    @property
     def _share(self) -> int:
         """How many colors a small picture of this page may have."""
-        return min(MOST_COLORS, (SCREENS.first - BACKGROUND - 1) // max(1, len(self._names)))
+        return min(MOST_COLORS, (SCREENS.first - BACKGROUND - 1) // max(1, len(self._names())))
+
+    def _shown(self) -> list[tuple[Area, int, SmallPicture]]:
+        """The computed small pictures of this page, with their areas and the first of their words."""
+        share = self._share()
+        shown = []
+        for number, (scene, area) in enumerate(zip(self._scenes(), PLACES, strict=False)):
+            small = self._small.get(scene)
+            if small is not None and small.most == share:
+                shown.append((area, BACKGROUND + 1 + number * share, small))
+        return shown
 
     def build(self, around: Surroundings) -> Content:
-        # Variants may have been dropped.
-        self._page = min(self._page, self._pages - 1)
-        items, loads, share = [], [], self._share
-        for number, (scene, area) in enumerate(zip(self._scenes, PLACES, strict=False)):
-            small, first = self._small.get(scene), BACKGROUND + 1 + number * share
-            if small is not None and small.most == share:
-                items.append(small.item(first, area.left + FRAME, area.top + FRAME))
-                loads.append((first, small.colors))
-        if not self._names:
-            items = [
+        shown = self._shown()
+        return Content(
+            items=[small.item(first, area.left + FRAME, area.top + FRAME) for area, first, small in shown]
+            if self.session.studio.variants
+            else [
                 text(line, 16, WORK.top + ROW_LINES * number + TEXT_DOWN, LIGHT_GRAY)
                 for number, line in enumerate(EMPTY)
-            ]
-        buttons = [
+            ],
+            loads=[(first, small.colors) for _, first, small in shown],
+            rows=self._rows,
+            widgets=self._buttons(),
+            idle=self._idle,
+        )
+
+    def _buttons(self) -> Sequence[Widget]:
+        return [
             VariantButton(
                 name,
                 f"Variant {name}: a click chooses it",
-                area=area,
                 run=partial(self._choose, name),
                 is_chosen=name == self._present,
-            )
-            for name, area in zip(self._names, PLACES, strict=False)
+            ).at(area)
+            for name, area in zip(self._names(), PLACES, strict=False)
         ]
-        return Content(items=items, loads=loads, rows=self._rows, widgets=buttons, idle=self._idle)
 
     def _idle(self) -> bool:
         """Compute the next missing small picture."""
-        share = self._share
-        for scene in self._scenes:
+        share = self._share()
+        for scene in self._scenes():
             small = self._small.get(scene)
             if small is None or small.most != share:
                 colors = self._colors_of(scene) if small is None else small.full
@@ -169,10 +185,6 @@ class VariantsScreen(Screen):
     # The menu.
 
     @property
-    def _pages(self) -> int:
-        return max(1, -(-len(self.session.studio.variants) // ON_PAGE))
-
-    @property
     def _present(self) -> str:
         """The chosen variant, else the last variant; empty without variants."""
         names = list(self.session.studio.variants)
@@ -180,7 +192,7 @@ class VariantsScreen(Screen):
 
     def _rows(self) -> Sequence[Widget]:
         name = self._present
-        why_not = "" if name else EMPTY[0]
+        why_not = "" if name else "no variant is kept yet"
         rows: list[Widget] = [
             Button("keep", "Keep the scene as it is now under a free letter.", run=self._keep),
             Entry("keep as", "Keep the scene under a name of your own.", take=self._keep_as),
@@ -202,9 +214,11 @@ class VariantsScreen(Screen):
             ),
             Button("drop", f"Drop variant {name}.", why_not, run=self._drop, value=name),
         ]
-        if self._pages > 1:
+        pages = len(self._pages)
+        if pages > 1:
             help = "The next page of variants; at the left end, the page before."
-            rows.append(page_choice(help, self._page, self._pages, partial(setattr, self, "_page")))
+            page = min(self._page, pages - 1)
+            rows.append(page_choice(help, page, pages, partial(setattr, self, "_page")))
         return rows
 
     def _choose(self, name: str) -> None:
@@ -250,9 +264,12 @@ class VariantButton(Button):
         word = YELLOW if self.is_chosen else LIGHT_GRAY if lit else SLATE
         area = self.area
         top = area.bottom - 12
-        name = fitted(self.label, (area.width - 8) // CHARACTER)
+        name = short_name(self.label, (area.width - 8) // CHARACTER)
         return [
             outline(area._replace(bottom=area.top + LINES + 2 * FRAME - 1), word),
             filled(Area(area.left, top, area.right, area.bottom), NIGHT),
             text(name, area.left + FRAME, top + 2, YELLOW if self.is_chosen else WHITE),
         ]
+
+    def pick(self, place: Place) -> object:
+        return self.run()

@@ -4,6 +4,7 @@ import io
 import re
 from collections.abc import Callable
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -258,30 +259,35 @@ def rest(hand: Hand) -> None:
 
 def shown_at(hand: Hand, place: int) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
     """The colors of a small picture on the display."""
+    display = hand.viewer.display
+    assert isinstance(display, Ramtek9300)
     left, top = PLACES[place].left + FRAME, PLACES[place].top + FRAME
-    return hand.display.field()[top : top + LINES, left : left + ELEMENTS].astype(np.int64)
+    return display.field()[top : top + LINES, left : left + ELEMENTS].astype(np.int64)
 
 
 def names(hand: Hand) -> list[str]:
     return [each.label for each in hand.viewer.board.content.widgets]
 
 
-def test_a_scene_is_kept_and_come_back_to_in_one_step(hand: Hand) -> None:
+def test_without_a_variant_there_is_nothing_to_come_back_to(hand: Hand) -> None:
     for label in ("come back", "drop"):
         hand.pick(label)
         assert told(hand) == (f"{label}: no variant is kept yet", True)
-    kept = hand.scene
+
+
+def test_a_scene_is_kept_and_come_back_to_in_one_step(hand: Hand) -> None:
+    kept = hand.viewer.studio.scene
     hand.pick("keep")
     assert told(hand) == ("kept as A", False)
     hand.viewer.studio.recolor("low", object_color="#123456")
-    changed = hand.scene
+    changed = hand.viewer.studio.scene
     hand.pick("come back")
-    assert hand.scene.equals(kept)
+    assert hand.viewer.studio.scene.equals(kept)
     assert told(hand) == ("A is the scene again; undo goes back", False)
-    assert hand.viewer.page == "picture"
+    assert hand.viewer.session.screen == "picture"
     hand.open_menu()
     undo(hand)
-    assert hand.scene is changed
+    assert hand.viewer.studio.scene is changed
 
 
 def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
@@ -305,15 +311,11 @@ def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -
         assert (list(hand.viewer.studio.variants), told(hand)[1]) == (["red"], is_in_use)
 
 
-@pytest.mark.parametrize("number", first(1, [ON_PAGE, 1, 4]))
-def test_small_pictures_have_true_colors_all_at_once_in_words_of_their_own(hand: Hand, number: int) -> None:
+@pytest.mark.parametrize("number", first(1, [4, 1, ON_PAGE]))
+def test_small_pictures_have_true_colors_all_at_once(hand: Hand, number: int) -> None:
     keep(hand, number)
     rest(hand)
     assert all(WORK.covers(place) for place in PLACES)
-    loads = hand.viewer.board.content.loads
-    ends = [0, *(first + len(colors) - 1 for first, colors in loads)]
-    assert all(before < first for before, (first, _) in zip(ends, loads, strict=False))
-    assert ends[-1] < SCREENS.first
     for place in {0, number - 1}:
         scene = list(hand.viewer.studio.variants.values())[place].scene
         picture = render(scene, (2 * ELEMENTS, 2 * LINES))
@@ -325,36 +327,50 @@ def test_small_pictures_have_true_colors_all_at_once_in_words_of_their_own(hand:
 
 def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
     keep(hand, 3)
-    counts = [len(hand.viewer.board.content.items)]
-    for _ in range(4):
+    assert len(hand.viewer.board.content.items) == 0
+    for number in (1, 2, 3, 3):
         hand.viewer.on_tick()
-        counts.append(len(hand.viewer.board.content.items))
-    assert counts == [0, 1, 2, 3, 3]
+        assert len(hand.viewer.board.content.items) == number
     assert not hand.viewer.board.content.idle()
     hand.pick("drop")
     hand.turn_to("picture")
     assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
-    # When the screen is back, the pictures of kept variants still stand.
+    # When the screen is back, those of kept variants still stand, and that of the dropped one is gone.
     hand.turn_to("variants")
     assert len(hand.viewer.board.content.items) == 2
     hand.pick("keep")
+    assert len(hand.viewer.board.content.items) == 2
     assert hand.viewer.board.content.idle()
     assert not hand.viewer.board.content.idle()
+
+
+def test_the_words_of_the_menu_keep_their_entries(hand: Hand) -> None:
+    keep(hand, ON_PAGE)
+    rest(hand)
+    loads = hand.viewer.board.content.loads
+    assert len(loads) == ON_PAGE
+    ends = [(first, first + len(colors)) for first, colors in loads]
+    assert all(end <= following for (_, end), (following, _) in pairwise(ends))
+    assert ends[0][0] > 0
+    assert ends[-1][1] <= SCREENS.first
 
 
 def test_many_variants_have_pages(hand: Hand) -> None:
     keep(hand, ON_PAGE + 3)
     assert len(names(hand)) == 3
+    assert hand.widget("page").present == "2 of 2"  # type: ignore[attr-defined]
+    # It opens at the page of the last variant.
     hand.pick("page")
-    assert len(names(hand)) == ON_PAGE
-    # The screen opens at the page of the last variant.
     hand.turn_to("picture")
     hand.turn_to("variants")
     assert len(names(hand)) == 3
+    hand.pick("page")
+    assert len(names(hand)) == ON_PAGE
+    hand.pick("page")
     for _ in range(3):
         hand.pick("drop")
     assert len(names(hand)) == ON_PAGE
-    assert "page" not in hand.labels
+    assert "page" not in [row.label for row in hand.viewer.board.content.rows()]
 
 
 def test_a_small_picture_that_is_refused_is_black(tmp_path: Path) -> None:
