@@ -290,7 +290,7 @@ class Viewer:
         self._unit.mark(self.board.mark)
 
     def _note(self, sent: Sent) -> None:
-        """Note the words of a page that shows an edit, or the picture of the last edit if it goes only now."""
+        """Note the words of a page that shows an edit, or the picture of the last edit when it goes."""
         scene, words, last = self.studio.scene, self.studio.words, self.session.last_edit
         is_edited = last is None or scene is not last.after
         has_other_words = self.board.screen.shows_picture and words is not self._words

@@ -33,7 +33,6 @@ from autocolor.widgets.widget import (
     TEXT_DOWN,
     Button,
     Choice,
-    Heading,
     Place,
     Widget,
     page_choice,
@@ -81,23 +80,6 @@ def menu_items(rows: Sequence[Widget], lit: Widget | None) -> list[Item]:
     return [*items, *(item for row in rows for item in row.items(row is lit and not row.why_not))]
 
 
-def pages_of(rows: Sequence[Widget], lines: int) -> list[list[Widget]]:
-    """The rows in pages that fit, each with room for one more row, which turns to the next page."""
-    if lines_of(rows) <= lines:
-        return [list(rows)]
-    pages: list[list[Widget]] = [[]]
-    used = 0
-    for row in rows:
-        if used + row.row_lines > lines - ROW_LINES:
-            # A heading goes with the row below it; that of a section stays under the pointer that opened it.
-            headings = [pages[-1].pop()] if len(pages[-1]) > 1 and isinstance(pages[-1][-1], Heading) else []
-            pages.append(headings)
-            used = lines_of(headings)
-        pages[-1].append(row)
-        used += row.row_lines
-    return pages
-
-
 def page_of_menu(
     rows: Sequence[Widget], last: Sequence[Widget], number: int, turn: Callable[[int], object]
 ) -> list[Widget]:
@@ -105,7 +87,14 @@ def page_of_menu(
 
     Each page ends with the `last` rows. If there are several pages, the row before them turns to another.
     """
-    pages = pages_of(rows, MENU.height - lines_of(last))
+    room = MENU.height - lines_of(last)
+    pages = [list(rows)]
+    if lines_of(rows) > room:
+        pages = [[]]
+        for row in rows:
+            if lines_of(pages[-1]) + row.row_lines > room - ROW_LINES:
+                pages.append([])
+            pages[-1].append(row)
     number = min(number, len(pages) - 1)
     if len(pages) > 1:
         pages[number].append(page_choice("The other rows of this menu.", number, len(pages), turn, MORE))

@@ -90,8 +90,7 @@ class Widget:
 
     def has(self, element: int, line: int) -> bool:
         """Whether a place belongs to the widget."""
-        left, top, right, bottom = self.area
-        return left <= element <= right and top <= line <= bottom
+        return self.area.has(element, line)
 
     def at(self, area: Area) -> Self:
         """The same widget at an area."""
