@@ -39,6 +39,7 @@ from autocolor.widgets.items import (
 from autocolor.widgets.widget import (
     BOX,
     MARGIN,
+    ROW_CHARACTERS,
     ROW_LINES,
     TEXT_DOWN,
     Entry,
@@ -49,6 +50,9 @@ from autocolor.widgets.widget import (
 
 THIN: Final = 2
 """Lines of the bar in a row."""
+
+LONGEST_LABEL: Final = ROW_CHARACTERS - 4
+"""The characters of a label that has room for a short number beside it."""
 
 BESIDE_BOX: Final = "  "
 """The room for the box at the right of a number."""
@@ -90,6 +94,10 @@ class Bar(Widget):
         return "" if self.value is None else number_text(self.value, self.step)
 
     @property
+    def row_lines(self) -> int:
+        return ROW_LINES if len(self.label) <= LONGEST_LABEL else 2 * ROW_LINES
+
+    @property
     def share(self) -> float:
         """The place of the value in the usual range, 0 to 1."""
         if self.value is None or self.high <= self.low:
@@ -97,7 +105,7 @@ class Bar(Widget):
         return min(1.0, max(0.0, (self.value - self.low) / (self.high - self.low)))
 
     def items(self, lit: bool) -> list[Item]:
-        return self._row_items(lit) if self.area.height <= ROW_LINES else self._wide_items(lit)
+        return self._row_items(lit) if self.area.height == self.row_lines else self._wide_items(lit)
 
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
@@ -134,14 +142,14 @@ class Bar(Widget):
     @property
     def _box(self) -> Area:
         left = self.area.right + 1 - MARGIN - BOX
-        top = self.area.top + TEXT_DOWN
+        top = self.area.bottom + 1 - ROW_LINES + TEXT_DOWN
         return Area(left, top, left + BOX - 1, top + BOX - 1)
 
     @property
     def _track(self) -> Area:
         """The area of the bar itself."""
         left, top, right, bottom = self.area
-        if self.area.height <= ROW_LINES:
+        if self.area.height == self.row_lines:
             return Area(left + MARGIN, bottom - THIN, right - MARGIN, bottom - 1)
         beside = CHARACTER * WIDE_LABEL + MARGIN if self.area.width > 3 * CHARACTER * WIDE_LABEL else MARGIN
         return Area(left + beside, top + 4, right - CHARACTER * WIDE_NUMBER - MARGIN, bottom - 4)
