@@ -35,6 +35,9 @@ PICTURE: Final = "picture"
 MIXING: Final = "mixing"
 """The name of the screen where colors are mixed, and taken from swatches and paints."""
 
+BLENDING: Final = "blending"
+"""The name of the screen where the two colors are blended over the picture; color mixing leads to it."""
+
 HISTORY: Final = "history"
 """The name of the screen with the steps of the session."""
 

@@ -51,10 +51,12 @@ class PaintingHand(Hand):
         return next(keys, None) or super().widget(label)
 
     def turn_to(self, title: str) -> None:
-        """Go to a screen by the rows of the menus."""
+        """Go to a screen by the rows of the menus. Color mixing leads to light blending."""
         if self.viewer.page != "picture":
             self.leave()
         self.open_menu()
+        if title == "light blending":
+            self.pick("color mixing")
         self.pick(title)
 
     def leave(self) -> None:

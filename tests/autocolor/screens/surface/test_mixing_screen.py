@@ -13,14 +13,8 @@ from autocolor.scene.swatches import swatches
 from autocolor.screens.session import Clipboard
 from autocolor.screens.steps import undo
 from autocolor.screens.surface.mixing_palette import Crop, crop_of
-from autocolor.screens.surface.mixing_screen import (
-    BLEND,
-    LIGHT_SOURCE,
-    OBJECT,
-    PICTURE,
-    MixingScreen,
-)
-from autocolor.screens.surface.painting import change_paint, take_paint
+from autocolor.screens.surface.mixing_screen import BLEND, PICTURE, MixingScreen
+from autocolor.screens.surface.painting import TWO_COLORS, change_paint, take_paint
 from autocolor.widgets.bars import ComponentBar
 from autocolor.widgets.items import CHARACTER, NIGHT, Area, text
 from autocolor.widgets.menu import WORK
@@ -44,7 +38,7 @@ def hand(tmp_path: Path) -> PaintingHand:
     return mixing(boxes_scene(), tmp_path)
 
 
-@pytest.mark.parametrize("section", [LIGHT_SOURCE, OBJECT])
+@pytest.mark.parametrize("section", TWO_COLORS)
 def test_the_bars_of_a_color_have_its_numbers_and_set_them_to_the_element(
     hand: PaintingHand, section: str
 ) -> None:
@@ -54,7 +48,7 @@ def test_the_bars_of_a_color_have_its_numbers_and_set_them_to_the_element(
         return [bar.value for bar in bars if isinstance(bar, ComponentBar)]
 
     def color() -> Color:
-        return hand.paint.object_color if section == OBJECT else hand.paint.light_color
+        return hand.paint.object_color if section == "object" else hand.paint.light_color
 
     for value in (0, 1, 143, 254, 255):
         for number, name in enumerate(("red", "green", "blue")):
@@ -214,7 +208,7 @@ def test_a_color_of_the_ramp_is_picked_on_the_bar_and_mixed_alone(hand: Painting
     assert bar_is_right(hand)
     assert np.array_equal(hand.colors(SHADES["object"])[0, -1], (255, 102, 7))
     # The last color is mixed above, where the light source was; swatches are for it, too.
-    hand.drag((300, STRIP.top), (STRIP.right + 50, STRIP.top))
+    hand.click(STRIP.right, STRIP.top)
     hand.pick("paints", 0.7)
     *others, last = ramp_of(hand)
     assert others == [(34, 0, 0), (255, 102, 7), (9, 0, 255)]
@@ -426,9 +420,9 @@ def test_the_unit_takes_the_paint_of_a_surface_that_it_picks_in_the_whole_pictur
     assert hand.scene is before
 
 
-@pytest.mark.parametrize("title", [OBJECT, LIGHT_SOURCE])
+@pytest.mark.parametrize("title", TWO_COLORS)
 def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand, title: str) -> None:
-    hand.pick(f"{title} heading")
+    hand.pick(f"section.{title}")
     hand.pick("take color")
     assert hand.message == f"pick a pixel: its color as you see it becomes the {title} color; Esc ends"
     element, line = place_in_picture(hand, "box 1", whole_picture(hand))
@@ -437,7 +431,7 @@ def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand, title: str) ->
     hint = hand.viewer.board.content.hint(element, line)
     assert hint == f"pick {in_digits(color)} of box 1 as the {title} color; Esc ends"
     hand.click(element, line)
-    assert (hand.paint.object_color if title == OBJECT else hand.paint.light_color) == color
+    assert (hand.paint.object_color if title == "object" else hand.paint.light_color) == color
     assert hand.message == f"{title}: {in_digits(color)}"
     assert shades_are_right(hand)
 
@@ -525,7 +519,7 @@ def test_a_color_is_pasted_into_the_section_or_the_chosen_color(
     hand.press("Ctrl+V")
     assert hand.paint == PAINTS[0].replace(light_color=color)
     # The color that was pasted last is the chosen color elsewhere.
-    hand.pick("object heading")
+    hand.pick("section.object")
     hand.move(300, 300)
     hand.press("Ctrl+V")
     assert hand.paint == PAINTS[0].replace(light_color=color, object_color=color)

@@ -38,7 +38,7 @@ def swatch_cell(hand: PaintingHand, shade: int, hue: int) -> Area:
 def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
     hand.click(*swatch_cell(hand, 4, 3).middle)
     assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
-    hand.pick("light source heading")
+    hand.pick("section.light source")
     hand.click(*swatch_cell(hand, 0, 19).middle)
     assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
     # A click on the shades chooses, too.
@@ -174,7 +174,7 @@ def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(han
     hand.click(*paint_place(hand, 2))
     assert hand.message == "object: Old red, #a52019"
     assert hand.paint.object_color == (165, 32, 25)
-    hand.pick("light source heading")
+    hand.pick("section.light source")
     hand.click(*paint_place(hand, 3))
     assert hand.message == "light source: #0e294b"
     assert hand.paint.light_color == (14, 41, 75)
