@@ -95,6 +95,11 @@ class Bar(Widget):
             return 0.0
         return min(1.0, max(0.0, (self.value - self.low) / (self.high - self.low)))
 
+    @property
+    def _end(self) -> int:
+        """The element of the track at the value."""
+        return self._track.left + round(self.share * (self._track.width - 1))
+
     def items(self, lit: bool) -> list[Item]:
         return self._row_items(lit) if self.area.height <= ROW_LINES else self._wide_items(lit)
 
@@ -107,14 +112,12 @@ class Bar(Widget):
         track = self._track
         items.append(filled(track, GRAY if lit else SLATE))
         if self.value is not None and not self.why_not:
-            end = track.left + round(self.share * (track.width - 1))
-            items.append(filled(track._replace(right=end), YELLOW if lit else self.word))
+            items.append(filled(track._replace(right=self._end), YELLOW if lit else self.word))
         return items
 
     def _wide_items(self, lit: bool) -> list[Item]:
         left, top, _, bottom = self.area
-        track = self._track
-        end = track.left + round(self.share * (track.width - 1))
+        track, end = self._track, self._end
         middle = (top + bottom) // 2 - 4
         number = fitted(f"{self.number} {self.unit}".rstrip(), WIDE_NUMBER)
         return [
@@ -123,7 +126,7 @@ class Bar(Widget):
             filled(track._replace(right=end), YELLOW if lit else self.word),
             filled(Area(end, track.top - 2, end, track.bottom + 2), WHITE),
             text(fitted(self.label, WIDE_LABEL), left + MARGIN, middle, self.ink),
-            text(number, track.right + MARGIN, middle, self.ink),
+            *([text(number, track.right + MARGIN, middle, self.ink)] if number else ()),
         ]
 
     @property
@@ -216,21 +219,11 @@ def number_text(value: float, step: float) -> str:
     value += 0.0
     if abs(value) >= 1e6 or not math.isfinite(value):
         return f"{value:g}"
-    digits = digits_of(step)
-    text = f"{value:.{digits + 1}f}"
+    # One digit more than the step has behind its point, of at most nine.
+    text = f"{value:.{len(f'{step:.9f}'.rstrip('0').partition('.')[2]) + 1}f}"
     if value and not float(text):
         return f"{value:.2g}"
     return text[:-1].removesuffix(".") if text.endswith("0") else text
-
-
-def digits_of(step: float) -> int:
-    """The digits behind the point of a step, at most nine.
-
-    >>> digits_of(5.0), digits_of(0.25), digits_of(0.1)
-    (0, 2, 1)
-    """
-    digits = f"{step:.9f}".rstrip("0")
-    return len(digits) - digits.index(".") - 1
 
 
 # Component bars: red, green, blue and white of a color, one element for each value of the component. Hue,
@@ -267,8 +260,7 @@ class ComponentBar(Bar):
         return Area(left + LETTER, top + UP_DOWN, left + LETTER + STEPS - 1, bottom - UP_DOWN)
 
     def items(self, lit: bool) -> list[Item]:
-        track = self._track
-        end = track.left + round(self.share * (track.width - 1))
+        track, end = self._track, self._end
         middle = (self.area.top + self.area.bottom + 1 - CHARACTER_LINES) // 2
         # The bar keeps its color when it is lit, which distinguishes it from the other bars.
         number, ink = fitted(self.number, 5), YELLOW if lit else WHITE
@@ -364,7 +356,7 @@ class LevelBar(Widget):
             down, up = pointer(element, strip.top - 2, DOWN, ink), pointer(element, strip.bottom + 2, UP, ink)
             return [*items, down, up]
         items.append(pointer(strip.left - 2, strip.bottom - along, RIGHT, ink))
-        return [*items, text(self.number, *self._number_area[:2], ink, NIGHT)]
+        return [*items, *([text(self.number, *self._number_area[:2], ink, NIGHT)] if self.number else ())]
 
     def pick(self, place: Place) -> object:
         return self.put(self.value_at(place))

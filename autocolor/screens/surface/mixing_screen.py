@@ -15,13 +15,12 @@ large as the screen allows, with the finish under the pointer; paints and colors
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Words
+from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
 from autocolor.errors import InputError, UsageError
 from autocolor.mapping.colors import (
@@ -93,10 +92,8 @@ def section_area(is_upper: bool) -> Area:
     return Area(LEFT, TOPS[is_upper], RIGHT_END, TOPS[is_upper] + SECTION_LINES - 1)
 
 
-HEX_ELEMENTS: Final = CHARACTER * len("#rrggbb") + 2 * MARGIN
-"""The width of the number of a color at the end of its heading."""
-
-Ramp = tuple[Color, ...]
+HEX_LEFT: Final = LEFT_END + 1 - CHARACTER * len("#rrggbb") - 2 * MARGIN
+"""The first element of the number of a color, at the end of its heading."""
 
 FEW: Final = "a ramp has at least 2 colors; to have none, switch the ramp off"
 MANY: Final = f"a ramp has at most {MOST_RAMP_COLORS:,} colors; remove a color first"
@@ -140,7 +137,7 @@ BARS: Final = (
 
 
 class Mixed(NamedTuple):
-    """A color that the bars of white, hue, saturation and value gave."""
+    """A color that a bar gave."""
 
     color: Color
     start: Color
@@ -170,7 +167,7 @@ class MixingScreen(Screen):
         # A ramp that is switched on begins with the color at which the default blend begins.
         self._lower = FIRST_RAMP_COLORS // 2
         """The number in a ramp of the color in the lower section. The ramp may have become shorter."""
-        self._grabbed: tuple[Ramp, int] = (), 0
+        self._grabbed: tuple[tuple[Color, ...], int] = (), 0
         """The ramp when a color of it was chosen last, and its number there: a drag moves that color."""
         self._mixed: dict[tuple[str, bool], Mixed] = {}
         """The color that the bars gave last, by the surface and whether it was in the upper section."""
@@ -232,8 +229,10 @@ class MixingScreen(Screen):
             self._stand_ins = stand_ins
         draw = partial(self._draw, shown.words)
         crop, picture = self._picture.of(draw, shown.words, self._stand_ins, self._surface)
-        content = Content(
-            items=[picture],
+        return Content(
+            items=[*(() if self._taking else self._items(words)), picture],
+            loads=() if self._taking else [(0, self._table(words, shown.entries))],
+            widgets=() if self._taking else self._widgets(words),
             rows=partial(self._rows, words),
             hint=partial(self._hint, crop),
             sample=partial(self._sample, crop),
@@ -242,16 +241,11 @@ class MixingScreen(Screen):
             pick=partial(self._pick, crop),
             escape=self._end_taking,
         )
-        if self._taking:
-            return content
-        lower, upper = self._in_section(False), self._in_section(True)
-        table = words.table(shown.entries, upper.color, lower.color, self.choices.colors)
-        return replace(
-            content,
-            items=[*self._items(words), picture],
-            loads=[(0, table)],
-            widgets=self._widgets(words),
-        )
+
+    def _table(self, words: MixingWords, entries: Bytes) -> Bytes:
+        """The lookup table with the colors beside the picture."""
+        light, object_color = (self._in_section(is_upper).color for is_upper in (True, False))
+        return words.table(entries, light, object_color, self.choices.colors)
 
     def _image_with(self, finish: str) -> DisplayImage:
         """The image on the display; with a finish, as the chosen surface would look with it."""
@@ -278,8 +272,6 @@ class MixingScreen(Screen):
             surface_row(self.session, "The surface whose colors you mix.", self._choose_surface),
             Gap("colors gap"),
             switch,
-            self._entry(True),
-            self._entry(False),
             # With a ramp there are as many rows as without, so that the rows below stay in their places.
             *(blend if paint.ramp is None else self._ramp_rows(paint.ramp)),
             Button(
@@ -292,7 +284,7 @@ class MixingScreen(Screen):
             *(() if self._taking else self.choices.rows(words.swatches, self._chosen)),
         ]
 
-    def _ramp_rows(self, ramp: Ramp) -> list[Widget]:
+    def _ramp_rows(self, ramp: tuple[Color, ...]) -> list[Widget]:
         lower, chosen = self._in_section(False).number, self._chosen.number
         between = mixed(ramp[lower], ramp[lower + 1], 0.5)
         return [
@@ -348,19 +340,26 @@ class MixingScreen(Screen):
     def _section(self, is_upper: bool, words: MixingWords) -> list[Widget]:
         """The heading of a section with the number of its color, and its bars."""
         chosen, top = self._in_section(is_upper), TOPS[is_upper]
-        heading = Area(LEFT, top, LEFT_END - HEX_ELEMENTS, top + ROW_LINES - 1)
+        heading, name = Area(LEFT, top, HEX_LEFT - 1, top + ROW_LINES - 1), chosen.name.capitalize()
         values = *chosen.color, white_of(chosen.color), *self._mixed_in(is_upper).hsv
         tops = range(top, top + SECTION_LINES, BAR_LINES)
         return [
             Button(
                 chosen.label,
-                f"{chosen.name.capitalize()}: click to pick swatches for it; Ctrl+C copies it.",
+                f"{name}: click to pick swatches for it; Ctrl+C copies it.",
                 area=heading,
                 within="section",
                 run=partial(self._choose, is_upper),
                 is_chosen=is_upper == self._is_upper,
             ),
-            self._entry(is_upper, "heading").at(heading._replace(left=heading.right + 1, right=LEFT_END)),
+            Entry(
+                chosen.label,
+                f"{name} by its name or number, such as teal or #b01020.",
+                area=heading._replace(left=HEX_LEFT, right=LEFT_END),
+                within="number",
+                value=in_digits(chosen.color),
+                take=partial(self._give, is_upper),
+            ),
             *(
                 ComponentBar(
                     f"{chosen.label}, {bar.name}",
@@ -376,14 +375,6 @@ class MixingScreen(Screen):
                 for number, (top, bar, value) in enumerate(zip(tops, BARS, values, strict=True))
             ),
         ]
-
-    def _entry(self, is_upper: bool, within: str = "") -> Entry:
-        """The row of a menu, or the number `within` the heading, over which a color is typed."""
-        color = self._in_section(is_upper)
-        help = f"{color.name.capitalize()} by its name or number, such as teal or #b01020."
-        label = color.label.removesuffix(" source")
-        take = partial(self._give, is_upper)
-        return Entry(label, help, within=within, value=in_digits(color.color), take=take)
 
     def _finishes(self) -> list[Widget]:
         """The finishes, side by side in a row."""
@@ -409,13 +400,13 @@ class MixingScreen(Screen):
             number = self._chosen.name
         else:
             number = f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
-        label, line = "blend" if paint.ramp is None else "ramp", BLEND_TOP + TEXT_DOWN
+        line = BLEND_TOP + TEXT_DOWN
         return [
             *(
                 level_strip(each.tobytes(), Area(LEFT, top + ROW_LINES, LEFT_END, top + SECTION_LINES - 1))
                 for top, each in shades
             ),
-            text(label, LEFT + MARGIN, line, LIGHT_GRAY),
+            text("blend" if paint.ramp is None else "ramp", LEFT + MARGIN, line, LIGHT_GRAY),
             text(number, RIGHT_END + 1 - CHARACTER * len(number), line),
         ]
 
@@ -543,22 +534,20 @@ class MixingScreen(Screen):
 
     def _put(self, is_upper: bool, number: int, value: float) -> None:
         """Give a color the number of one of its bars. Raises UsageError for a number beyond the bar."""
-        bar, last = BARS[number], self._mixed_in(is_upper)
+        bar = BARS[number]
         if not 0 <= value <= bar.most or (number < WHOLE and value != int(value)):
             kind = "a whole number" if number < WHOLE else "a number"
             raise UsageError(f"{bar.name} must be {kind} from 0 to {bar.most}, not {value:g}; type another")
+        color, start, hsv = self._mixed_in(is_upper)
         if number < WHITE_BAR:
-            color = list(last.color)
-            color[number] = int(value)
-            self._give(is_upper, color)
-            return
-        if number == WHITE_BAR:
-            to = with_white(last.start, int(value))
-            last = Mixed(to, last.start, hsv_of(to))
+            red, green, blue = (int(value) if each == number else color[each] for each in range(3))
+            to = start = red, green, blue
+            hsv = hsv_of(to)
+        elif number == WHITE_BAR:
+            to = with_white(start, int(value))
+            hsv = hsv_of(to)
         else:
-            hsv = list(last.hsv)
-            hsv[number - WHOLE] = value
-            to = color_of_hsv(Hsv(*hsv))
-            last = Mixed(to, to, Hsv(*hsv))
-        self._mixed[self._surface, is_upper] = last
+            hsv = hsv._replace(**{bar.name: value})
+            to = start = color_of_hsv(hsv)
+        self._mixed[self._surface, is_upper] = Mixed(to, start, hsv)
         self._give(is_upper, to)

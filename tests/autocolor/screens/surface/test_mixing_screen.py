@@ -309,18 +309,18 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
 def test_a_color_is_typed_on_the_keyboard_or_picked_letter_by_letter(
     hand: PaintingHand, typed: str, color: Color
 ) -> None:
-    hand.pick("object")
+    hand.pick("number.object")
     for letter in typed:
         hand.pick(letter)
     hand.pick("OK")
     assert hand.paint.object_color == color
     hand.press("left", "right")
-    hand.pick("light")
+    hand.pick("number.light source")
     hand.type(typed)
     hand.press("return")
     assert hand.paint.light_color == color
     scene = hand.scene
-    hand.pick("light")
+    hand.pick("number.light source")
     hand.type("tael")
     hand.press("return")
     assert "teal" in hand.message
@@ -499,7 +499,7 @@ def test_a_color_is_copied_over_its_section_and_elsewhere_the_chosen_color(
         ((30, 40), "#fffaf0"),
         ((400, 150), "#b01020"),
         ((300, 300), "#b01020"),
-        (hand.widget("heading.light").area[:2], "#fffaf0"),
+        (hand.widget("number.light source").area[:2], "#fffaf0"),
     ):
         hand.move(*place)
         hand.press("Ctrl+C")

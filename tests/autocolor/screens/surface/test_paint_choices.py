@@ -221,7 +221,7 @@ def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(h
     ):
         if paints is not None:
             bring(hand, paints)
-        hand.pick("object")
+        hand.pick("number.object")
         board.typing.insert(name)
         hand.press("return")
         assert hand.paint.object_color == color
