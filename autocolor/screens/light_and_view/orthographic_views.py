@@ -27,25 +27,25 @@ PICTURE_ASPECT: Final = 640 / 480
 """The width of a picture over its height. Paper: Figure 11, 640 x 480."""
 
 
-TOP_AREA: Final = Area(0, 0, 247, 223)
-PICTURE_AREA: Final = Area(256, 0, 503, 223)
-FRONT_AREA: Final = Area(0, 232, 247, 455)
-SIDE_AREA: Final = Area(256, 232, 503, 455)
+TOP_AREA: Final = Area(0, 16, 247, 235)
+PICTURE_AREA: Final = Area(256, 16, 503, 235)
+FRONT_AREA: Final = Area(0, 244, 247, 463)
+SIDE_AREA: Final = Area(256, 244, 503, 463)
 """The quarters of a work area of 504 x 464, on a grid of 8.
 
 Assumed: as on an engineering drawing, the top view is above the front view, and the side view beside it. The
 fourth quarter is for DISPLAY VIEW. Eight lines are left free at the bottom.
 """
 
-LINES_BETWEEN: Final = (Area(251, 0, 252, 463), Area(0, 227, 503, 228))
+LINES_BETWEEN: Final = (Area(251, 16, 252, 463), Area(0, 239, 503, 240))
 """The lines between the quarters."""
 
 
 def area_of_picture(area: Area = PICTURE_AREA, aspect: float = PICTURE_ASPECT) -> Area:
     """The largest area of the shape of a picture in the middle of an area.
 
-    >>> area_of_picture(Area(256, 0, 503, 223))
-    Area(left=256, top=19, right=503, bottom=204)
+    >>> area_of_picture(Area(256, 16, 503, 235))
+    Area(left=256, top=33, right=503, bottom=218)
     """
     width = min(area.width, round(area.height * aspect))
     height = min(area.height, round(area.width / aspect))

@@ -58,7 +58,8 @@ class OverPicture(Screen):
         image = other or present
 
         def draw() -> Sequence[Item]:
-            self._legend = legend(image, MENU.left if around.has_menu else None, self.corners)
+            free = (MENU.left, self.corners, MENU.top) if around.has_menu else (None, self.corners)
+            self._legend = legend(image, *free)
             return legend_items(self._legend)
 
         return Content(

@@ -38,7 +38,6 @@ class BlendingScreen(OverPicture):
     title = "light blending"
     help = "Pick a level on the bar: the light color blends in above it"
     has_menu = False
-    is_in_menu = False
 
     def enter(self) -> None:
         if not self.session.has_news:

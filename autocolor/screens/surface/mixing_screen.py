@@ -157,6 +157,7 @@ class MixingScreen(Screen):
 
     name = "mixing"
     title = "color mixing"
+    word = "colors"
     help = "Drag the bars to mix colors; the bar between blends them, or picks from a ramp"
 
     def __init__(self, session: Session) -> None:

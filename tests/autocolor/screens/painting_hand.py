@@ -51,18 +51,14 @@ class PaintingHand(Hand):
         return next(keys, None) or super().widget(label)
 
     def turn_to(self, title: str) -> None:
-        """Go to a screen by the rows of the menus. Color mixing leads to light blending."""
-        if self.viewer.page != "picture":
-            self.leave()
-        self.open_menu()
+        """Go to a screen by the strip. A row of color mixing leads to light blending."""
+        super().turn_to("color mixing" if title == "light blending" else title)
         if title == "light blending":
-            self.pick("color mixing")
-        self.pick(title)
+            self.pick(title)
 
     def leave(self) -> None:
         """Go back to the picture, away from its menu, with no message."""
-        self.open_menu()
-        self.pick("< picture")
+        self.turn_to("picture")
         self.move(20, 20)
         self.viewer.tell("")
 
