@@ -148,8 +148,8 @@ LESSONS: Final = (
     Lesson(
         "blend",
         (
-            "Pick < picture, then light blending, and drag the handle of the bar:",
-            "above it, the color of the body goes over into that of the light.",
+            "In the menu of colors, pick light blending; drag the handle of the",
+            "bar: above it, the color of the body goes over into the light's.",
         ),
         _blended,
     ),

@@ -20,11 +20,11 @@ from autocolor.screens.session import BLENDING, MIXING
 from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.bars import LANE, LevelBar, PercentBar
 from autocolor.widgets.items import CHARACTER, WIDTH, Area, text
-from autocolor.widgets.menu import MENU, WORK
+from autocolor.widgets.menu import MENU
 from autocolor.widgets.widget import TEXT_DOWN, Button, Gap, Widget
 
-TOP: Final = WORK.top + 24
-BOTTOM: Final = WORK.bottom - 24
+TOP: Final = 24
+BOTTOM: Final = MENU.bottom - 24
 BAR_ELEMENTS: Final = 24
 PERCENT_ELEMENTS: Final = 36
 BESIDE: Final = 5

@@ -281,6 +281,7 @@ class MixingScreen(Screen):
                 "a ramp has no blend" if paint.ramp is not None else "",
                 run=partial(turn, BLENDING),
             ),
+            Gap("taking gap"),
             *(self._taking_row(thing) for thing in (PAINT, COLOR)),
             *(() if self._taking else self.choices.rows(words.swatches, self._chosen)),
         ]

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from autocolor import Mesh, Paint, Palette, scene_of
+from autocolor.arrays import Booleans, Words
 from autocolor.checks import Color
+from autocolor.files.state import recent_colors
 from autocolor.mapping.colors import Hsv, blend_level, color_of_hsv, hsv_of
 from autocolor.scene.kinds import in_digits
-from autocolor.scene.swatches import swatches
+from autocolor.scene.swatches import FINISHES, finished, swatches
 from autocolor.screens.session import Clipboard
 from autocolor.screens.steps import undo
 from autocolor.screens.surface.mixing_palette import Crop, crop_of
@@ -67,19 +69,26 @@ def test_the_bars_of_a_color_have_its_numbers_and_set_them_to_the_element(
         assert values()[4:] == list(hsv_of(color()))
 
 
+def has_surface(hand: PaintingHand, words: Words, surface: str = "") -> Booleans:
+    """Whether each word is of a surface, the chosen one if none is given."""
+    first, levels = hand.viewer.studio.level_ranges[surface or hand.viewer.session.surface_name]
+    return (first <= words) & (words < first + levels)
+
+
 def crop(hand: PaintingHand) -> Crop:
     """The part of the picture that shows the chosen surface."""
-    first, levels = hand.viewer.studio.level_ranges[hand.viewer.session.surface_name]
-    words = hand.viewer.studio.words
-    return crop_of((first <= words) & (words < first + levels), PICTURE)
+    return crop_of(has_surface(hand, hand.viewer.studio.words), PICTURE)
+
+
+def whole_picture(hand: PaintingHand) -> Crop:
+    """The whole picture, from which paints and colors are taken."""
+    return crop_of(np.ones(hand.viewer.studio.words.shape, np.bool_), WORK)
 
 
 def place_in_picture(hand: PaintingHand, surface: str, shown: Crop | None = None) -> tuple[int, int]:
     """An element and a line of the screen where the picture shows a surface."""
     shown = shown or crop(hand)
-    first, levels = hand.viewer.studio.level_ranges[surface]
-    words = shown.of(hand.viewer.studio.words)
-    places = np.argwhere((first <= words) & (words < first + levels))
+    places = np.argwhere(has_surface(hand, shown.of(hand.viewer.studio.words), surface))
     line, element = places[len(places) // 2].tolist()
     return shown.area.left + element, shown.area.top + line
 
@@ -91,9 +100,8 @@ def test_the_picture_shows_the_chosen_surface_in_its_words_and_the_others_in_gra
     assert hand.viewer.session.surface_name == "box 1"
     area = crop(hand).area
     assert area.width == PICTURE.width or area.height == PICTURE.height
-    first, levels = hand.viewer.studio.level_ranges["box 1"]
     words = crop(hand).of(hand.viewer.studio.words)
-    is_own = (first <= words) & (words < first + levels)
+    is_own = has_surface(hand, words)
     assert is_own.any()
     assert (words[~is_own] > 0).any()
     seen, colors = hand.words(crop(hand).area), hand.colors(crop(hand).area).astype(int)
@@ -101,6 +109,28 @@ def test_the_picture_shows_the_chosen_surface_in_its_words_and_the_others_in_gra
     assert (seen[words == 0] == NIGHT).all()
     assert np.ptp(colors[~is_own], axis=1).max() < 16
     assert colors[~is_own].max() < 128
+
+
+def test_a_finish_is_seen_under_the_pointer_and_given_by_a_click(hand: PaintingHand) -> None:
+    scene, studio = hand.scene, hand.viewer.studio
+    before = hand.colors(PICTURE)
+    for name in FINISHES:
+        hand.move(*hand.widget(name).area.middle)
+        finish = scene.with_surface("box 0", **finished(scene.surfaces["box 0"], name))
+        wanted = studio.image_of(finish)
+        shown = crop(hand)
+        is_own = has_surface(hand, shown.of(wanted.words))
+        assert np.array_equal(hand.colors(shown.area)[is_own], wanted.entries[shown.of(wanted.words)[is_own]])
+        assert not np.array_equal(hand.colors(PICTURE), before)
+    assert (hand.scene, studio.history.to_undo) == (scene, ())
+    seen = hand.colors(PICTURE)
+    hand.move(300, 440)
+    assert np.array_equal(hand.colors(PICTURE), before)
+    hand.pick("glass")
+    assert hand.scene.equals(finish)
+    assert np.array_equal(hand.colors(PICTURE), seen)
+    hand.pick(" ", 0.1)
+    assert hand.scene is scene
 
 
 @pytest.mark.parametrize("bar", first(2, ["object, white", "object, hue", "object, red", "object, value"]))
@@ -170,7 +200,7 @@ def give(hand: PaintingHand, ramp: list[str]) -> None:
 def test_a_ramp_that_is_switched_on_looks_nearly_as_before_and_off_is_as_before(hand: PaintingHand) -> None:
     before, entries = hand.paint, hand.viewer.studio.entries.astype(int)
     # Rows stay in their places.
-    labels = ("ramp", "take paint", "take color", "paints")
+    labels = ("ramp", "light blending", "take paint", "paints")
     places = [hand.widget(label).area for label in labels]
     hand.pick("ramp", 0.95)
     assert hand.message == "box 0: the ramp replaces its two colors and their blend"
@@ -182,7 +212,6 @@ def test_a_ramp_that_is_switched_on_looks_nearly_as_before_and_off_is_as_before(
     assert [hand.widget(label).area for label in labels] == places
     # The blend of 0.4 begins at the third of six colors.
     assert np.abs(hand.viewer.studio.entries - entries).max() <= 4
-    assert bar_is_right(hand)
     hand.pick("ramp", 0.95)
     assert hand.paint == before
     assert hand.message == "box 0: two colors and their blend replace its ramp"
@@ -224,6 +253,30 @@ def test_the_wheel_goes_from_color_to_color_on_the_bar(hand: PaintingHand) -> No
         hand.viewer.on_pointer(STRIP.left + 40, STRIP.top + 5, f"wheel {turn}")
         numbers.append(hand.message[len("swatches are for ") :])
     assert numbers == [f"color {number} of 3" for number in (1, 1, 2, 3, 3, 2)]
+
+
+def test_a_color_of_the_ramp_is_dragged_along_the_bar_in_one_step(hand: PaintingHand) -> None:
+    ramp = ["#000", "#f00", "#000", "#00f", "#fff"]
+    give(hand, ramp)
+    before = hand.scene
+
+    def place(share: float) -> tuple[float, float]:
+        return STRIP.left + share * (STRIP.width - 1), STRIP.top + 5
+
+    hand.drag(place(0.27), place(0.5), place(0.7))
+    # The second color is where it was dropped; below and above it, the ramp is stretched and shortened.
+    assert ramp_of(hand) == ((0, 0, 0), (85, 0, 0), (170, 0, 0), (255, 0, 0), (255, 255, 255))
+    assert hand.message == "swatches are for color 4 of 5"
+    assert bar_is_right(hand)
+    hand.pick(" ", 0.1)
+    assert hand.scene is before
+    # The way there does not matter, and an end can be dragged, too.
+    hand.drag(place(0.27), place(1), place(0), place(0.27))
+    assert hand.scene.equals(before)
+    hand.drag(place(1), place(0.5))
+    assert ramp_of(hand)[2:] == ((255, 255, 255),) * 3
+    hand.leave()
+    assert recent_colors() == ()
 
 
 def test_colors_are_added_between_two_and_removed_down_to_two(hand: PaintingHand) -> None:
@@ -292,10 +345,9 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
     tmp_path: Path, count: int, levels: int | None
 ) -> None:
     hand = mixing(boxes_scene(count, levels), tmp_path)
-    first, owned = hand.viewer.studio.level_ranges["box 0"]
-    assert owned >= 1005
+    assert hand.viewer.studio.level_ranges["box 0"].levels >= 1005
     words = crop(hand).of(hand.viewer.studio.words).astype(int)
-    is_own = (first <= words) & (words < first + owned)
+    is_own = has_surface(hand, words)
     seen = hand.words(crop(hand).area).astype(int)
     assert np.abs(seen - words)[is_own].max() <= 1
     # So its colors are those of the picture, or of the neighboring level.
@@ -366,12 +418,9 @@ def test_a_scene_without_surfaces_in_use_says_so(tmp_path: Path) -> None:
     empty = scene_of(Mesh(np.zeros((0, 3)), np.zeros((0, 4), int)), name="empty")
     hand = mixing(empty, tmp_path)
     assert [row.label for row in hand.viewer.board.content.rows()] == []
-    assert hand.viewer.board.content.hint(300, 300) == hand.viewer.board.screen.help
     hand.press("p")
     assert hand.message == "no surface is under the pointer; point at it in the picture"
     hand.click(30, 60)
-    hand.turn_to("light blending")
-    hand.move(20, 20)
     hand.leave()
     assert hand.is_as_sent(empty)
 
@@ -393,11 +442,6 @@ def test_a_color_that_passes_through_gray_or_black_keeps_its_hue(
     hsv = list(hsv_of(color))
     hsv[1 if bar == "saturation" else 2] = 100
     assert hand.paint.object_color == color_of_hsv(Hsv(*hsv))
-
-
-def whole_picture(hand: PaintingHand) -> Crop:
-    """The whole picture, from which paints and colors are taken."""
-    return crop_of(np.ones(hand.viewer.studio.words.shape, np.bool_), WORK)
 
 
 def test_the_unit_takes_the_paint_of_a_surface_that_it_picks_in_the_whole_picture(hand: PaintingHand) -> None:
@@ -438,16 +482,10 @@ def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand, title: str) ->
 
 def test_taking_ends_without_a_pick(hand: PaintingHand) -> None:
     scene = hand.scene
-    for end in ("the row", "escape", "leaving"):
+    for end in (lambda: hand.pick("take paint"), lambda: hand.press("escape"), hand.leave):
         hand.pick("take paint")
-        if end == "the row":
-            hand.pick("take paint")
-        elif end == "escape":
-            hand.press("escape")
-        else:
-            hand.leave()
-            hand.turn_to("color mixing")
-        assert hand.viewer.page == "mixing"
+        end()
+        hand.turn_to("color mixing")
         assert hand.scene is scene
         assert shades_are_right(hand)
 
@@ -527,7 +565,7 @@ def test_a_color_is_pasted_into_the_section_or_the_chosen_color(
 
 
 # If the screen changes on purpose, look at it, and copy the new numbers from the failure.
-DRAWN = {"mixing": 2412671598, "ramp": 665924768, "paints": 1280379929, "blending": 1466915575}
+DRAWN = {"mixing": 4258540103, "ramp": 2201684369, "paints": 2201640875}
 
 
 def test_the_screens_of_paints_are_drawn_as_they_were(hand: PaintingHand) -> None:
@@ -545,7 +583,4 @@ def test_the_screens_of_paints_are_drawn_as_they_were(hand: PaintingHand) -> Non
     names = Palette(["#a52019", "#f8f32b"], ["Signal red", "Teal"])
     hand.viewer.session.paints, hand.viewer.session.paints_name = names, "paints.gpl"
     note("paints")
-    hand.turn_to("light blending")
-    hand.move(20, 20)
-    note("blending")
     assert found == DRAWN

@@ -10,7 +10,7 @@ from autocolor import Palette, write_palette
 from autocolor.checks import Color
 from autocolor.files.state import recent_colors
 from autocolor.scene.kinds import in_digits
-from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, finished, swatches
+from autocolor.scene.swatches import COLUMNS, ROWS, swatches
 from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, MOST_RECENT, SwatchField
 from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.items import Area
@@ -53,15 +53,6 @@ def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
         assert (hand.colors(swatch_cell(hand, *divmod(number, COLUMNS))) == color).all()
     assert shades_are_right(hand)
     assert bar_is_right(hand)
-
-
-def test_a_finish_keeps_the_object_color(hand: PaintingHand) -> None:
-    for name in FINISHES:
-        before = hand.scene.surfaces["box 0"]
-        hand.pick(name)
-        assert hand.scene.surfaces["box 0"] == before.replace(**finished(before, name))
-        assert shades_are_right(hand)
-        assert bar_is_right(hand)
 
 
 def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
