@@ -180,11 +180,11 @@ class MixingScreen(Screen):
         self._picture: Cached[tuple[Crop, Item]] = Cached()
 
     def enter(self) -> None:
-        self.choices.begin()
+        self.choices.note_mixed()
 
     def leave(self) -> None:
         self._taking = ""
-        self.choices.end()
+        self.choices.note_mixed()
 
     # The chosen surface and its colors.
 
@@ -483,7 +483,7 @@ class MixingScreen(Screen):
         self.session.tell(f"swatches are for {self._chosen.name}")
 
     def _choose_surface(self, name: str) -> None:
-        self.choices.end()
+        self.choices.note_mixed()
         self.session.choose_surface(name)
 
     def _choose_color(self, number: int) -> None:
@@ -494,12 +494,9 @@ class MixingScreen(Screen):
 
     def _move_color(self, to: int) -> None:
         """Move the color that was chosen last to another place in the ramp."""
-        self.choices.end()
         grabbed = self._grabbed
         self._give_ramp(with_moved_color(*grabbed, to), to)
         self._grabbed = grabbed
-        # The mixes beside it are not new colors.
-        self.choices.begin()
 
     def _give_ramp(self, ramp: Sequence[Sequence[int]], number: int) -> None:
         """Give the surface another ramp, and choose a color of it."""
@@ -513,6 +510,7 @@ class MixingScreen(Screen):
         """Give a color of the chosen surface another value."""
         self._is_upper = is_upper
         change_paint(self.session, **self._chosen.change(color_of(self.session, color)))
+        self.choices.mixed.add(self._chosen.color)
 
     def _color_at(self, element: int, line: int) -> Color:
         section = self._section_at(element, line)

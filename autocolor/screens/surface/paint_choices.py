@@ -70,8 +70,8 @@ class PaintChoices:
         """Paints, and the number of the page to which the user turned while they were shown."""
         self._taken = 0
         """The number of the color that was taken last, on its page."""
-        self._begun = session.scene
-        """The scene when the mixing began."""
+        self.mixed: set[Color] = set()
+        """The colors that were given to surfaces one by one, since they were last noted."""
 
     @property
     def page_number(self) -> int:
@@ -130,21 +130,14 @@ class PaintChoices:
         self._turned, self._taken = (self.session.paints, number), 0
         self.session.tell(f"shown: {self.page.title}")
 
-    def begin(self) -> None:
-        """Mixing begins: look up the recent colors."""
-        self._begun, self._recent = self.session.scene, recent_colors()[:MOST_RECENT]
-
-    def end(self) -> None:
-        """Mixing ends: note the new colors of the surfaces as recent colors."""
-        befores = {surface.name: surface.paint for surface in self._begun.surfaces}
+    def note_mixed(self) -> None:
+        """Note the mixed colors that surfaces have as recent colors, and look up the recent colors."""
         for surface in self.session.scene.surfaces:
-            before, now = befores.get(surface.name, surface.paint), surface.paint
-            if (before.ramp is None) == (now.ramp is None):
-                # Adding or removing a color of a ramp moves the others, which are not new.
-                mixed = [color for color in dict.fromkeys(colors_of(now)) if color not in colors_of(before)]
-                for color in mixed[-MOST_RECENT:]:
+            for color in dict.fromkeys(colors_of(surface.paint)):
+                if color in self.mixed:
                     note_color(color)
-        self.begin()
+        self.mixed.clear()
+        self._recent = recent_colors()[:MOST_RECENT]
 
     def _color(self, number: int) -> tuple[str, Color]:
         """The name and the value of one of `colors`; recent colors have no name."""
