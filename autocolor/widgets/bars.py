@@ -36,22 +36,10 @@ from autocolor.widgets.items import (
     pointer,
     text,
 )
-from autocolor.widgets.widget import (
-    BOX,
-    MARGIN,
-    ROW_LINES,
-    TEXT_DOWN,
-    Place,
-    Typed,
-    Widget,
-    box_items,
-)
+from autocolor.widgets.widget import BOX, MARGIN, ROW_LINES, TEXT_DOWN, Place, Typed, Widget, box_items
 
 THIN: Final = 2
 """Lines of the bar in a row."""
-
-BESIDE_BOX: Final = "  "
-"""The room for the box at the right of a number."""
 
 
 @dataclass(frozen=True)
@@ -105,8 +93,8 @@ class Bar(Widget):
 
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
-        value = self.number + ("" if self.flip is None else BESIDE_BOX)
-        items = self.labeled_row(lit, value)
+        # The box stands at the right of the number.
+        items = self.labeled_row(lit, self.number + ("" if self.flip is None else "  "))
         if self.flip is not None:
             items += box_items(self._box, self.value is not None, self.ink, background)
         track = self._track
@@ -151,7 +139,7 @@ class Bar(Widget):
     def value_at(self, element: int) -> float:
         """The value at an element, rounded to the step; beyond the bar, an end of the usual range."""
         track = self._track
-        share = (element - track.left) / max(1, track.width - 1)
+        share = (element - track.left) / (track.width - 1)
         if not 0 < share < 1:
             return self.low if share <= 0 else self.high
         value = rounded_to(self.low + share * (self.high - self.low), self.step)
@@ -201,8 +189,6 @@ def rounded_to(value: float, step: float) -> float:
     >>> rounded_to(0.30000000000000004, 0.1), rounded_to(17.2, 5)
     (0.3, 15.0)
     """
-    if step <= 0:
-        return value
     digits = max(0, 2 - math.floor(math.log10(step)))
     return float(round(math.floor(value / step + 0.5) * step, digits))
 
