@@ -107,33 +107,21 @@ AS_IT_IS: Final = np.arange(WORDS, dtype=np.uint16)
 """The words that stand for the words of a picture that is shown in its own colors."""
 
 
-class MixedBar(NamedTuple):
-    """A bar of a color: its name, its largest number, its word, and its help with the color's name."""
-
-    name: str
-    most: int
-    word: int
-    help: str
-
-
-WHOLE: Final = 4
-"""The first bars, whose numbers are whole."""
+BARS: Final = (
+    ("red", FULL, "", RED),
+    ("green", FULL, "", GREEN),
+    ("blue", FULL, "", BLUE),
+    ("white", FULL, "", WHITE),
+    ("hue", 360, " degrees", LIGHT_GRAY),
+    ("saturation", 100, " percent", LIGHT_GRAY),
+    ("value", 100, " percent", LIGHT_GRAY),
+)
+"""The bars of a color: the name, the largest number, the unit, and the word of each."""
 
 WHITE_BAR: Final = 3
-BARS: Final = (
-    MixedBar("red", FULL, RED, "Red of {}, 0 to 255."),
-    MixedBar("green", FULL, GREEN, "Green of {}, 0 to 255."),
-    MixedBar("blue", FULL, BLUE, "Blue of {}, 0 to 255."),
-    MixedBar(
-        "white",
-        FULL,
-        WHITE,
-        "Tints and shades: adds the same to red, green and blue; each stops at its ends.",
-    ),
-    MixedBar("hue", 360, LIGHT_GRAY, "Hue of {}, 0 to 360 degrees."),
-    MixedBar("saturation", 100, LIGHT_GRAY, "Saturation of {}, 0 to 100 percent."),
-    MixedBar("value", 100, LIGHT_GRAY, "Value of {}, 0 to 100 percent."),
-)
+"""The place of the white bar; the bars up to it have whole numbers."""
+
+TINTS: Final = "Tints and shades: adds the same to red, green and blue; each stops at its ends."
 
 
 class Mixed(NamedTuple):
@@ -364,17 +352,19 @@ class MixingScreen(Screen):
             ),
             *(
                 ComponentBar(
-                    f"{chosen.label}, {bar.name}",
-                    bar.help.format(chosen.name),
+                    f"{chosen.label}, {bar}",
+                    TINTS if bar == "white" else f"{bar.capitalize()} of {chosen.name}, 0 to {most}{unit}.",
                     area=Area(RIGHT, top, RIGHT_END, top + BAR_LINES - 1),
                     value=value,
-                    high=bar.most,
+                    high=most,
                     put=partial(self._put, is_upper, number),
-                    word=bar.word,
-                    letter=bar.name[0].upper(),
-                    strip=words.hues.tobytes() if bar.name == "hue" else b"",
+                    word=word,
+                    letter=bar[0].upper(),
+                    strip=words.hues.tobytes() if bar == "hue" else b"",
                 )
-                for number, (top, bar, value) in enumerate(zip(tops, BARS, values, strict=True))
+                for number, (top, (bar, most, unit, word), value) in enumerate(
+                    zip(tops, BARS, values, strict=True)
+                )
             ),
         ]
 
@@ -534,10 +524,11 @@ class MixingScreen(Screen):
 
     def _put(self, is_upper: bool, number: int, value: float) -> None:
         """Give a color the number of one of its bars. Raises UsageError for a number beyond the bar."""
-        bar = BARS[number]
-        if not 0 <= value <= bar.most or (number < WHOLE and value != int(value)):
-            kind = "a whole number" if number < WHOLE else "a number"
-            raise UsageError(f"{bar.name} must be {kind} from 0 to {bar.most}, not {value:g}; type another")
+        bar, most, *_ = BARS[number]
+        is_whole = number <= WHITE_BAR
+        if not 0 <= value <= most or (is_whole and value != int(value)):
+            kind = "a whole number" if is_whole else "a number"
+            raise UsageError(f"{bar} must be {kind} from 0 to {most}, not {value:g}; type another")
         color, start, hsv = self._mixed_in(is_upper)
         if number < WHITE_BAR:
             red, green, blue = (int(value) if each == number else color[each] for each in range(3))
@@ -547,7 +538,7 @@ class MixingScreen(Screen):
             to = with_white(start, int(value))
             hsv = hsv_of(to)
         else:
-            hsv = hsv._replace(**{bar.name: value})
+            hsv = hsv._replace(**{bar: value})
             to = start = color_of_hsv(hsv)
         self._mixed[self._surface, is_upper] = Mixed(to, start, hsv)
         self._give(is_upper, to)
