@@ -76,19 +76,21 @@ def change_paint(
 ) -> None:
     """Change the colors of the chosen surface, if there is one, and show a message about its new paint.
 
-    If two colors replace a ramp, colors and blend are as before the ramp, if this session gave it, else
+    If two colors replace a ramp, colors and blend are as before the ramp, if there are steps before it, else
     the color in its middle and its last color, unless they are given.
     """
-    if session.surface_name:
-        present = session.scene.surfaces[session.surface_name].paint
+    name = session.surface_name
+    if name:
+        present = session.scene.surfaces[name].paint
         if present.ramp is not None and changes.get("ramp") is None:
-            mesh, before = session.blended.get(session.surface_name, (None, present))
-            if mesh is not session.scene.mesh:
-                before = Paint(present.color, present.ramp[-1])
-            scene = session.scene.with_surface(session.surface_name, paint=before.replace(**changes))
+            middle = Paint(present.color, present.ramp[-1])
+            earlier = reversed(session.studio.history.earlier)
+            paints = (row.paint for scene in earlier for row in scene.surfaces if row.name == name)
+            before = next((paint for paint in paints if paint.ramp is None), middle)
+            scene = session.scene.with_surface(name, paint=before.replace(**changes))
         else:
-            scene = session.scene.with_paint(session.surface_name, **changes)
-        edit_paint(session, scene, message(scene.surfaces[session.surface_name].paint) if message else "")
+            scene = session.scene.with_paint(name, **changes)
+        edit_paint(session, scene, message(scene.surfaces[name].paint) if message else "")
 
 
 def with_finish(session: Session, name: str) -> Scene:
@@ -104,9 +106,6 @@ def edit_paint(session: Session, scene: Scene, message: str) -> None:
     chosen = f"{session.surface_name}: " if message else ""
     messages = [message, *(each.removeprefix(chosen) for each in unset_paints(before, scene))]
     session.edit(scene)
-    for old, new in zip(before.surfaces, scene.surfaces, strict=True):
-        if old.paint.ramp is None and new.paint.ramp is not None:
-            session.blended[old.name] = before.mesh, old.paint
     if any(messages):
         session.tell("; ".join(filter(None, messages)))
 
