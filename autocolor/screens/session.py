@@ -17,9 +17,8 @@ from autocolor.errors import InputError
 from autocolor.files.palette_file import Palette
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.lights import Light
-from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Paint, Surface
+from autocolor.scene.surfaces import Surface
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import Comparing
@@ -34,6 +33,9 @@ PICTURE: Final = "picture"
 
 MIXING: Final = "mixing"
 """The name of the screen where colors are mixed, and taken from swatches and paints."""
+
+BLENDING: Final = "blending"
+"""The name of the screen where the two colors are blended over the picture; color mixing leads to it."""
 
 HISTORY: Final = "history"
 """The name of the screen with the steps of the session."""
@@ -182,8 +184,6 @@ class Session:
     """The name of the part that was pointed at last; empty at first."""
     before_solo: Solo | None = None
     """The light that was last switched on alone, and the switches before."""
-    blended: dict[str, tuple[Mesh, Paint]] = field(default_factory=dict)
-    """By the name of a surface that was given a ramp: the mesh then, and its paint before."""
 
     # Files.
     mesh_up: str = "z"

@@ -106,8 +106,8 @@ LESSONS: Final = (
     Lesson(
         "blend",
         (
-            "Pick blend at the top, and drag the handle of the bar: above the",
-            "handle, the body takes the color of the light.",
+            "In the menu of colors, pick light blending; drag the handle of the",
+            "bar: above it, the color of the body goes over into the light's.",
         ),
         edited("surfaces", lambda row: [row.paint.blend]),
     ),

@@ -401,11 +401,11 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     MappingScreen,
     ScalarScreen,
     VariantsScreen,
+    EntriesScreen,
+    FileScreen,
     HistoryScreen,
     ExplainScreen,
-    FileScreen,
     SplitScreen,
-    EntriesScreen,
     SentScreen,
     HelpScreen,
 )

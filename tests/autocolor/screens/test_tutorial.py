@@ -143,7 +143,7 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
         lambda hand: paint(hand).object_color in set(map(tuple, swatches().tolist())),
     ),
     "blend": (
-        [go("light blending"), lambda hand: hand.move(20, 20), pick("blend level", 0.5)],
+        [go("color mixing"), pick("blend bar", 0.5)],
         lambda hand: paint(hand).blend == pytest.approx(0.5, abs=0.01),
     ),
     "mix a ramp": (
