@@ -17,7 +17,6 @@ from autocolor.widgets.items import (
     WHITE,
     Area,
     Item,
-    SmallPicture,
     area_of,
     between,
     clipped,
@@ -226,13 +225,3 @@ def test_no_stroke_is_drawn_twice_in_whichever_direction_it_comes(strokes: list[
     expected = {min(ways, key=lambda way: (way[1], way[0])) for ways in both_ways}
     found = drawn(np.array(strokes, np.float64)).tolist()
     assert found == sorted(map(list, expected)) or not expected
-
-
-def test_a_small_picture_is_its_colors_in_borrowed_words() -> None:
-    full = np.arange(36, dtype=np.uint8).reshape(3, 4, 3)
-    small = SmallPicture(full, 12)
-    display = Ramtek9300(TINY)
-    for first, left, top in ((900, 3, 5), (900, 3, 5), (800, 20, 9)):
-        draw_items(display, [small.item(first, left, top)])
-        words = display.words[top : top + 3, left : left + 4]
-        assert (small.colors[words - first] == full).all()
