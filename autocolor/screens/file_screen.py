@@ -160,7 +160,7 @@ class FileScreen(Screen):
         self._size, self._smooth = SIZE, SMOOTHNESS
         self._exports: list[tuple[str, Scene]] = []
         """The names and the scenes of the images that are still to be exported."""
-        self._ticks_to_export = 0
+        self._ticks_to_export = self._count = 0
         self._lit, self._rested = "", 0
         """The row under the pointer, and for how many ticks the pointer has been on it."""
 
@@ -416,6 +416,7 @@ class FileScreen(Screen):
         """Export images of scenes while nothing moves, named after the present scene and their own names."""
         stem = file_stem(self.session.scene.name)
         self._exports = [(f"{stem}-{file_stem(each)}" if each else stem, scenes[each]) for each in scenes]
+        self._count = len(scenes)
         self._announce_export()
 
     def _announce_export(self) -> None:
@@ -434,7 +435,8 @@ class FileScreen(Screen):
             self._exports = []
             self.session.warn(error)
             return
-        self.session.tell(f"saved {path.name}: {written_size(self._size)}, smoothness {self._smooth}")
+        of = f", the last of {self._count}" if self._count > 1 else ""
+        self.session.tell(f"saved {path.name}{of}: {written_size(self._size)}, smoothness {self._smooth}")
         if self._exports:
             self._announce_export()
 
