@@ -15,6 +15,7 @@ from typing import Final, NamedTuple
 from autocolor.arrays import Words
 from autocolor.errors import InputError
 from autocolor.files.palette_file import Palette
+from autocolor.journal.autosave import Autosave
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
@@ -186,6 +187,8 @@ class Session:
     """The light that was last switched on alone, and the switches before."""
 
     # Files.
+    autosave: Autosave | None = None
+    """The journal of the session in the state folder; None if nobody keeps it."""
     mesh_up: str = "z"
     mesh_scale: float = 1.0
     """The up axis and the scale of mesh files that are opened; other files give their own."""
@@ -257,12 +260,14 @@ class Session:
         """Show a message for some seconds; with `persistent`, until the next action.
 
         An empty message takes the last message away. Letters that cannot be printed, as in names of files,
-        are escaped. Users of another machine do not see the folders above `root`.
+        are escaped.
         """
-        if not self.is_at_hand:
-            message = message.replace(str(self.root), self.root.name or "/")
         now = time.monotonic()
-        self.news = Message(escaped(message), is_warning, now, persistent, offer=offer)
+        self.news = Message(escaped(self.shown(message)), is_warning, now, persistent, offer=offer)
+
+    def shown(self, text: object) -> str:
+        """A text with paths. Users of another machine do not see the folders above `root`."""
+        return str(text) if self.is_at_hand else str(text).replace(str(self.root), self.root.name or "/")
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first and the number of the others."""

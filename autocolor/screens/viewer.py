@@ -24,10 +24,9 @@ from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_actions import (
     FileOnDisk,
     bring_paints,
-    lying,
     open_file,
+    remark,
     save_screenshot,
-    take_changes,
 )
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
@@ -77,7 +76,7 @@ class Viewer:
         self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
         self.session.keys = rows_of_help()
-        self._disk = FileOnDisk(self.studio)
+        self._disk = FileOnDisk(self.session)
         self._action = Action(self.session)
         self._drags = 0
         """How many drags and picks there were."""
@@ -86,7 +85,7 @@ class Viewer:
         """The base of the page that was shown last."""
         self._words: Words | None = None
         """The words of the picture that was shown last."""
-        hints = "F1: help", "Tab or the right edge: the menu", lying(self.session)
+        hints = "F1: help", "Tab or the right edge: the menu", remark(self.session)
         self.session.tell("; ".join(filter(None, hints)), persistent=True)
         self._update()
         self._unit.show()
@@ -244,7 +243,7 @@ class Viewer:
 
     def _take_changes(self) -> None:
         """Show the changes that another program made to the scene's file."""
-        if self._disk.was_changed() and self._reopen_by(lambda: take_changes(self.session, self._disk)):
+        if self._disk.was_changed() and self._reopen_by(self._disk.take):
             self._update()
 
     def _reopen_by(self, run: Callable[[], object]) -> bool:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.screens.variants_screen import VariantButton
+from autocolor.screens.gallery import Tile
 from tests.autocolor.screens.boxes import hand_at, told
 from tests.autocolor.screens.hand import Hand
 
@@ -72,7 +72,7 @@ def test_a_variant_is_named_when_it_is_kept(hand: Hand) -> None:
     hand.type("dusk")
     hand.press("return")
     assert list(hand.viewer.studio.variants) == ["dusk"]
-    assert [each.label for each in hand.viewer.board.widgets() if isinstance(each, VariantButton)] == ["dusk"]
+    assert [each.label for each in hand.viewer.board.widgets() if isinstance(each, Tile)] == ["dusk"]
 
 
 def test_without_a_keyboard_nobody_is_asked(hand: Hand) -> None:
