@@ -202,23 +202,23 @@ def test_a_value_is_computed_once_for_the_same_sources_and_again_if_it_failed() 
 # If a screen changes on purpose, look at it, and copy the new number from the failure.
 
 PAGES = {
-    "picture": 1229590673,
-    "light and view": 952220487,
-    "lights": 3306065835,
-    "reflectance": 1157463122,
-    "mixing": 3950514208,
-    "blending": 562151639,
-    "mapping": 3933246665,
-    "scalar": 2184431660,
-    "variants": 176481419,
-    "history": 3682309220,
-    "file": 1304176776,
+    "picture": 2674432064,
+    "light and view": 2308372252,
+    "lights": 1138960888,
+    "reflectance": 738956396,
+    "mixing": 2333176823,
+    "blending": 3509464344,
+    "mapping": 504982366,
+    "scalar": 495222711,
+    "variants": 1213160922,
+    "history": 721254749,
+    "file": 1510196374,
     "explain": 3468525711,
     "split": 1019572510,
-    "entries": 2831939804,
-    "sent": 2717923104,
-    "help": 2044210532,
-    "tutorial": 1313919563,
+    "entries": 1718922199,
+    "sent": 3012791792,
+    "help": 3885588141,
+    "tutorial": 1186513274,
 }
 
 

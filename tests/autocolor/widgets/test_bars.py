@@ -76,7 +76,6 @@ def test_the_ends_of_a_bar_are_those_of_its_range_even_between_steps() -> None:
     assert bar.value_at(639) == 0.97
     assert 0.05 <= bar.value_at(ROW.right - 9) <= 0.97
     assert Bar("bar", area=ROW, value=1.0, low=1.0, high=1.0).share == 0.0
-    assert rounded_to(0.123, 0) == 0.123
 
 
 def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
