@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.meshes.repair import UPS
@@ -467,6 +467,7 @@ def short_date(seconds: float, now: float | None = None) -> str:
 class FileRow(Button):
     """A file, with its kind at the right, and before it the date, unless the name needs the room."""
 
+    row_lines: ClassVar[int] = ROW_LINES
     shown: str = ""
     date: str = ""
 
