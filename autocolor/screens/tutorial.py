@@ -125,7 +125,7 @@ LESSONS: Final = (
         "flaps",
         (
             "Keep a light from a part of the car: in this menu, or that of lights,",
-            "switch on one of the flaps x, y and z, and set where it ends.",
+            "add one of the flaps x, y and z, and set where it ends.",
         ),
         _cut_off,
     ),

@@ -104,11 +104,12 @@ class Bar(Widget):
         items = self.labeled_row(lit, value)
         if self.flip is not None:
             items += box_items(self._box, self.value is not None, self.ink, background)
-        track = self._track
-        items.append(filled(track, GRAY if lit else SLATE))
-        if self.value is not None and not self.why_not:
+        if self.value is not None:
+            track = self._track
             end = track.left + round(self.share * (track.width - 1))
-            items.append(filled(track._replace(right=end), YELLOW if lit else self.word))
+            items.append(filled(track, GRAY if lit else SLATE))
+            if not self.why_not:
+                items.append(filled(track._replace(right=end), YELLOW if lit else self.word))
         return items
 
     def _wide_items(self, lit: bool) -> list[Item]:

@@ -223,7 +223,7 @@ class Switch(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         background = WHITE if self.is_chosen else SLATE if lit else NIGHT
-        items = self.row(lit, self.label, "  ", self.is_chosen)
+        items = self.row(lit, self.label, " ", self.is_chosen)
         return [*items, *box_items(self._box, self.is_on, BLACK if self.is_chosen else self.ink, background)]
 
     @property
