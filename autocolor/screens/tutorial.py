@@ -83,7 +83,7 @@ LESSONS: Final = (
         "flaps",
         (
             "Keep a light from a part of the car: in the menu of views or lights,",
-            "switch on one of the flaps x, y and z, and set where it ends.",
+            "add one of the flaps x, y and z, and set where it ends.",
         ),
         edited("lights", cutting_flaps),
     ),

@@ -119,10 +119,11 @@ class Bar(Widget):
         items = self.row(lit, self.label, value)
         if self.flip is not None:
             items += box_items(self._box, self.value is not None, self.ink, background)
-        track = self._track
-        items.append(filled(track, GRAY if lit else SLATE))
-        if self.value is not None and not self.why_not:
-            items.append(filled(track._replace(right=self._end), YELLOW if lit else self.word))
+        if self.value is not None:
+            track = self._track
+            items.append(filled(track, GRAY if lit else SLATE))
+            if not self.why_not:
+                items.append(filled(track._replace(right=self._end), YELLOW if lit else self.word))
         return items
 
     def _wide_items(self, lit: bool) -> list[Item]:

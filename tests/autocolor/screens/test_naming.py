@@ -40,7 +40,7 @@ def test_a_name_that_is_taken_is_refused_and_stays_to_be_typed_over(hand: Hand) 
 
 
 def test_a_second_click_on_the_name_of_a_light_renames_it(hand: Hand) -> None:
-    row = next(row for row in hand.viewer.board.widgets() if row.key == "light list.fill")
+    row = next(row for row in hand.viewer.board.widgets() if row.key == "light list. 2 fill")
     for _ in range(2):
         hand.click(row.area.left + 30, row.area.top + 5)
     hand.type("sky")

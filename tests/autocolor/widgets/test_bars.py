@@ -229,7 +229,7 @@ COMPONENT = Area(20, 20, 339, 35)
 DRAWN = [
     (Bar("bar", area=ROW, value=0.3), 2248963053, 3937851439),
     (Bar("bar", area=ROW, value=0.3, flip=lambda: 0), 779451755, 1080164163),
-    (Bar("bar", area=ROW, value=None, flip=lambda: 0), 3860464718, 3947222848),
+    (Bar("bar", area=ROW, value=None, flip=lambda: 0), 3711837659, 1226440828),
     (Bar("bar", area=ROW, value=0.3, why_not="not now", word=RED), 2965018818, 496825007),
     (Bar("bar", area=WIDE_BAR, value=0.3, unit="degrees", word=RED), 1594393171, 1561743892),
     (ComponentBar("red", area=COMPONENT, value=77, letter="R", word=RED), 1317594259, 3894026590),

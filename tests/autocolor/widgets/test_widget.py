@@ -133,6 +133,7 @@ DRAWN: list[tuple[Widget, int, int]] = [
     (Button("go"), 3637888975, 3632758787),
     (Button("go", value="5", is_chosen=True), 618134226, 618134226),
     (Button("go", why_not="not now", value="5"), 826001560, 3578027959),
+    (Button("go", why_not="not now", is_chosen=True), 3626575330, 3626575330),
     (PanelButton("go"), 2092732181, 2096023769),
     (PanelButton("go", is_chosen=True), 2084597048, 2084597048),
     (Panel("task", lines=[("go", WHITE)]), 2132029073, 2132029073),
