@@ -100,7 +100,7 @@ class LightsScreen(OverPicture):
         marks.area = WORK if around.has_menu else SCREEN
         # The list covers handles, also where they are within reach of a place beside it.
         covered = self._list.area if around.has_panels else NOWHERE
-        handles = () if picking.is_on else marks.handles()
+        handles = () if picking.is_on else [*content.handles, *marks.handles()]
         return replace(
             content,
             items=[*content.items, *(picking if picking.is_on else marks).items()],
@@ -140,7 +140,7 @@ class LightsScreen(OverPicture):
                 choose=session.choose_light,
             ),
             *first,
-            exposure_row(self.edits),
+            exposure_row(session),
         ]
         for title, columns in {**SECTIONS, "other settings": others}.items():
             rows += [Section(title), *parameter_rows(session, light, columns)]

@@ -28,7 +28,7 @@ from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
-from autocolor.screens.screen import Content, Handle, Surroundings
+from autocolor.screens.screen import Content, Handle, Sample, Surroundings
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.items import (
@@ -79,7 +79,7 @@ class MappingScreen(OverPicture):
         if not around.has_panels:
             return replace(content, rows=self._rows)
         items = [*content.items, *panel_items(self._curve())]
-        return replace(content, items=items, rows=self._rows, handles=self._handles())
+        return replace(content, items=items, rows=self._rows, handles=[*content.handles, *self._handles()])
 
     # The menu.
 
@@ -102,7 +102,7 @@ class MappingScreen(OverPicture):
                 run=lambda: session.edit(session.scene.as_in_1983()),
             ),
             Gap("exposure gap"),
-            exposure_row(self.edits),
+            exposure_row(session),
             *surface_rows(session, self._put),
             *held_rows(session, self._put),
             Gap("scene gap"),
@@ -165,6 +165,9 @@ class MappingScreen(OverPicture):
             return super().hint(element, line)
         x, y = fractions_of(element, line)
         return f"intensity {x:.2f}, level {y:.2f}: a click or a drag makes a point here"
+
+    def sample(self, element: int, line: int) -> Sample | None:
+        return None if self._is_on_panel(element, line) else super().sample(element, line)
 
     def _is_on_panel(self, element: int, line: int) -> bool:
         return self._has_panel and PANEL.has(element, line)

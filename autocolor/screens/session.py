@@ -184,6 +184,8 @@ class Session:
     """The light that was last switched on alone, and the switches before."""
     blended: dict[str, tuple[Mesh, Paint]] = field(default_factory=dict)
     """By the name of a surface that was given a ramp: the mesh then, and its paint before."""
+    own_colors: dict[str, str] = field(default_factory=dict)
+    """By the name of a surface: its object color before a key gave it another."""
 
     # Files.
     mesh_up: str = "z"

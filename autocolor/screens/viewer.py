@@ -38,7 +38,6 @@ from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
 from autocolor.screens.picture.explain_screen import ExplainScreen
 from autocolor.screens.picture.history_screen import HistoryScreen
-from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.picture.split_screen import SplitScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
@@ -61,7 +60,6 @@ class Viewer:
     studio: Studio
     session: Session
     board: Board
-    edits: PictureEdits
 
     def __init__(self, scene: Scene | History, display: HostPort, folder: Path | None = None) -> None:
         self.display = display
@@ -74,7 +72,6 @@ class Viewer:
         self.session = Session(self.studio, self.display, self.folder)
         self.screens = {each.name: each(self.session) for each in SCREENS}
         self.board = Board(self.session, self.screens)
-        self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
         self.session.keys = rows_of_help()
         self._disk = FileOnDisk(self.studio)

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
-from autocolor.screens.light_and_view.marks import arrow_end, flap_marks
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
-    SIDES,
     OrthographicViews,
     PointMark,
     ViewSide,
 )
 from autocolor.screens.picture.picture_edits import target_of
 from autocolor.screens.screen import Handle
+from autocolor.widgets.items import Area
+from autocolor.widgets.widget import NOWHERE
 
 EYE: Final = "eye"
 TARGET: Final = "target"
@@ -28,6 +29,9 @@ DIRECTION: Final = "direction"
 FLAP: Final = "flap"
 """The kinds of movable points."""
 
+DIRECTION_LENGTH: Final = 40.0
+"""Assumed: the length of the arrow of a light with a direction and no aim, in elements."""
+
 BETWEEN: Final = 14
 """Assumed: elements or lines between neighboring handles along the line of a flap."""
 
@@ -35,11 +39,11 @@ BETWEEN: Final = 14
 class MovablePoint(NamedTuple):
     """A point that can be moved in a view: the eye, its target, or a point of a light.
 
-    `side` is the name of the view. A flap has an axis and an end.
+    A flap has an axis and an end.
     """
 
     what: str
-    side: str = ""
+    side: ViewSide
     light: str = ""
     axis: str = ""
     end: str = ""
@@ -52,21 +56,6 @@ class MovablePoint(NamedTuple):
         if self.what == FLAP:
             return f"{self.light}: flap {self.axis}, {self.end}"
         return self.light if self.what == LIGHT else f"{self.light}: {self.what}"
-
-    def point_in(self, scene: Scene, views: OrthographicViews) -> Vector | None:
-        """The place of the point in a scene; None if the scene does not have the point."""
-        if self.what == EYE:
-            return scene.view.eye
-        if self.what == TARGET:
-            return target_of(scene)
-        light = next((each for each in scene.lights_in_world if each.name == self.light), None)
-        if light is None or self.what == LIGHT:
-            return None if light is None else light.position
-        if self.what == FLAP:
-            flap = getattr(light.flaps, self.axis)
-            value = math.inf if flap is None else float(getattr(flap, self.end))
-            return (value, value, value) if math.isfinite(value) else None
-        return arrow_end(views, light)
 
     def put(self, scene: Scene, point: Vector) -> Scene:
         """The scene with the movable point at `point`. An end of a flap does not pass the other end."""
@@ -88,76 +77,113 @@ class MovablePoint(NamedTuple):
         flaps: Any = {self.axis: {self.end: value}}
         return scene.with_light(self.light, flaps=flaps)
 
-
-def movable_of(handle: Handle) -> MovablePoint:
-    """The point that a handle of this screen moves."""
-    assert isinstance(handle.key, MovablePoint)
-    return handle.key
-
-
-def side_of(movable: MovablePoint) -> ViewSide:
-    """The view in which a handle moves its point."""
-    return next(side for side in SIDES if side.name == movable.side)
+    def message(self, scene: Scene, point: Vector, views: OrthographicViews) -> str:
+        """The text of the message line for the movable point at `point` of a scene."""
+        if self.what != FLAP:
+            places = zip(AXES, point, strict=True)
+            return f"{self.label}: " + "  ".join(f"{axis} {views.rounded(place):g}" for axis, place in places)
+        flap = getattr(scene.lights[self.light].flaps, self.axis)
+        return f"{self.label} {views.rounded(getattr(flap, self.end)):g}"
 
 
-def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Handle]:
-    """All handles. The chosen light or eye is last: of handles at one place, the last is grabbed.
+class MarkedPoint(NamedTuple):
+    """A movable point in a view: its coordinates, its mark, and the end of the arrow that begins there.
 
-    `chosen` is the name of a light, or empty for the eye.
+    All coordinates of an end of a flap are its value. A point of a light has the light, in world coordinates,
+    and its number.
     """
-    eye = [*_handles(MovablePoint(TARGET), scene, views), *_handles(MovablePoint(EYE), scene, views)]
-    handles = eye if chosen else []
-    for light in sorted(scene.lights, key=lambda each: each.name == chosen):
-        if light.name == chosen:
-            handles += _handles_of_flaps(light, views)
-        if light.axis is not None:
-            what = AIM if light.aim is not None else DIRECTION
-            handles += _handles(MovablePoint(what, light=light.name), scene, views)
-        handles += _handles(MovablePoint(LIGHT, light=light.name), scene, views)
-    return handles if chosen else handles + eye
+
+    movable: MovablePoint
+    point: Vector
+    mark: PointMark
+    end: Vector | None = None
+    light: Light | None = None
+    number: int = 0
+
+    @property
+    def pixel(self) -> tuple[int, int]:
+        """The element and the line of the mark."""
+        return round(self.mark.place[0]), round(self.mark.place[1])
 
 
-def mark_of(movable: MovablePoint, side: ViewSide, scene: Scene, views: OrthographicViews) -> PointMark:
-    """The mark of a point in a view: of the eye and of a light, an arrow at the edge if it is outside."""
-    point = movable.point_in(scene, views)
-    assert point is not None
-    if movable.what == EYE:
-        return views.mark(side, point, target_of(scene))
-    if movable.what == LIGHT:
-        return views.mark(side, point, arrow_end(views, scene.lights_in_world[movable.light]))
-    return PointMark(*(views.position(side, point),) * 2)
+def points_in(
+    scene: Scene, views: OrthographicViews, side: ViewSide, chosen: str
+) -> tuple[tuple[MarkedPoint, ...], tuple[MarkedPoint, ...]]:
+    """The movable points in a view; those of the chosen light or eye are apart, in the second tuple.
 
-
-def _handles(movable: MovablePoint, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:
-    """The handles of a point in the views that show it or have an arrow to it."""
-    point = movable.point_in(scene, views)
-    assert point is not None
-    label = f"{movable.label}: {point_text(point, views)}"
-    for side in SIDES:
-        element, line = (round(each) for each in mark_of(movable, side, scene, views).place)
-        if side.area.has(element, line):
-            yield Handle(movable._replace(side=side.name), element, line, label)
-
-
-def _handles_of_flaps(light: Light, views: OrthographicViews) -> Iterator[Handle]:
-    """The handles along the lines of a light's flaps."""
-    for side in SIDES:
-        for mark in flap_marks(views, side, light):
-            movable = MovablePoint(FLAP, side.name, light.name, AXES[mark.axis], mark.end)
-            left, top, right, bottom = (round(each) for each in mark.stroke[0])
-            for along in range(BETWEEN // 2, max(right - left, bottom - top), BETWEEN):
-                is_level = mark.axis == side.up
-                place = (left + along, top) if is_level else (left, top + along)
-                yield Handle(movable, *place, movable.label)
-
-
-def point_text(point: Vector, views: OrthographicViews) -> str:
-    """The coordinates of a point, for the message line, as exact as the views can place it.
-
-    >>> point_text((4.02, -1.60813, 5.0), OrthographicViews((0.0, 0.0, 0.0), 20.0))
-    'x 4.02  y -1.61  z 5'
+    `chosen` is the name of a light, or empty for the eye. A chosen light has its flaps.
     """
-    return "  ".join(f"{axis} {views.rounded(value):g}" for axis, value in zip(AXES, point, strict=True))
+    eye = MovablePoint(EYE, side), scene.view.eye, MovablePoint(TARGET, side), target_of(scene), None
+    arrows: list[tuple[MovablePoint, Vector, MovablePoint, Vector | None, Light | None]] = [eye]
+    for light in scene.lights_in_world:
+        start = MovablePoint(LIGHT, side, light.name)
+        end = start._replace(what=DIRECTION if light.aim is None else AIM)
+        arrows.append((start, light.position, end, arrow_end(views, light), light))
+    points: tuple[list[MarkedPoint], list[MarkedPoint]] = [], []
+    for number, (start, point, end, end_point, shining) in enumerate(arrows):
+        group = points[start.light == chosen]
+        if shining is not None and start.light == chosen:
+            group += _flaps_in(shining, views, side)
+        if end_point is not None:
+            at = views.position(side, end_point)
+            group.append(MarkedPoint(end, end_point, PointMark(at, at), None, shining, number))
+        mark = views.mark(side, point, end_point)
+        group.append(MarkedPoint(start, point, mark, end_point, shining, number))
+    return tuple(points[False]), tuple(points[True])
+
+
+def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
+    """The end of a light's arrow: its aim, or a point in its direction; None without either."""
+    if light.aim is not None or light.axis is None:
+        return light.aim
+    x, y, z = light.position
+    length = DIRECTION_LENGTH / views.scale
+    return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
+
+
+def _flaps_in(light: Light, views: OrthographicViews, side: ViewSide) -> Iterator[MarkedPoint]:
+    """The ends of a light's flaps that a view shows: of its two coordinates, finite and within its area."""
+    for axis in (side.right, side.up):
+        flap = getattr(light.flaps, AXES[axis])
+        for end in ("minimum", "maximum") if flap is not None else ():
+            value = float(getattr(flap, end))
+            if math.isfinite(value):
+                at = views.position(side, (value, value, value))
+                movable = MovablePoint(FLAP, side, light.name, AXES[axis], end)
+                marked = MarkedPoint(movable, (value, value, value), PointMark(at, at), light=light)
+                if side.area.covers(line_of_flap(marked)):
+                    yield marked
+
+
+def line_of_flap(flap: MarkedPoint) -> Area:
+    """The line across a view at an end of a flap (Paper: Figure 9)."""
+    side, (element, line) = flap.movable.side, flap.pixel
+    if flap.movable.axis == AXES[side.right]:
+        return side.area._replace(left=element, right=element)
+    return side.area._replace(top=line, bottom=line)
+
+
+def handles_of(
+    points: Sequence[MarkedPoint],
+    scene: Scene,
+    views: OrthographicViews,
+    signs: Mapping[MovablePoint, Area],
+    hold: Callable[[MarkedPoint], object],
+) -> Iterator[Handle]:
+    """The handles of points in the view that shows them or has an arrow to them, with their numerals.
+
+    Of handles at one place, the last is grabbed. A flap has handles all along its line.
+    """
+    for each in points:
+        movable = each.movable
+        places = [each.pixel] if movable.side.area.has(*each.pixel) else []
+        if movable.what == FLAP:
+            left, top, right, bottom = line_of_flap(each)
+            along = range(BETWEEN // 2, max(right - left, bottom - top), BETWEEN)
+            places = [(left + step, top) if top == bottom else (left, top + step) for step in along]
+        label, sign = movable.message(scene, each.point, views), signs.get(movable, NOWHERE)
+        for place in places:
+            yield Handle(movable, *place, label, sign, hold=partial(hold, each))
 
 
 def _step(start: Vector, end: Vector) -> Vector:

@@ -11,15 +11,13 @@ from hypothesis import strategies as st
 from autocolor import Light, View
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
+from autocolor.screens.light_and_view.handles import points_in
 from autocolor.screens.light_and_view.marks import (
     RIM_SIDES,
-    Cross,
-    arrow,
     cone_outline,
-    flap_marks,
-    light_marks,
     numerals,
     picture_corners,
+    side_items,
 )
 from autocolor.screens.light_and_view.orthographic_views import (
     FRONT,
@@ -30,15 +28,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
 from autocolor.testing import directions, lights, numbers, vectors, views
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.items import Area
-from tests.autocolor.screens.light_and_view.pointing import VIEWS
-
-places = st.tuples(st.floats(-300, 300), st.floats(-300, 300))
-
-
-def test_an_arrow_that_points_at_the_viewer_has_no_head_and_a_short_one_a_head_of_half_its_length() -> None:
-    assert arrow((5, 5), (5, 5)).tolist() == [[5, 5, 5, 5]]
-    assert [len(arrow((5, 5), (x, 5))) for x in (7.9, 8.0)] == [1, 3]
-    assert arrow((0, 0), (0, 8))[1, 1] == pytest.approx(4)
+from tests.autocolor.screens.light_and_view.pointing import VIEWS, boxed
 
 
 def rim_of(light: Light, end: Vector) -> Floats:
@@ -100,12 +90,6 @@ def test_the_lines_are_tangents_of_the_rim(
         assert min(beside.max(), (-beside).max()) < 0.1
 
 
-def test_the_corners_are_those_of_the_picture_as_deep_as_the_target() -> None:
-    view = View((0.0, -2.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=90.0)
-    corners = picture_corners(view, (5.0, 0.0, 3.0), aspect=1.5)
-    assert corners == pytest.approx(np.array([(-3, 0, 2), (3, 0, 2), (3, 0, -2), (-3, 0, -2)]))
-
-
 @given(views())
 def test_the_renderer_has_the_corners_at_the_corners_of_its_raster(view: View) -> None:
     lines, elements = 480, 640
@@ -115,37 +99,32 @@ def test_the_renderer_has_the_corners_at_the_corners_of_its_raster(view: View) -
     focal = focal_length(lines, elements, view.field_of_view)
     assert x / depth * focal == pytest.approx(np.array([-1, 1, 1, -1]) * elements / 2)
     assert y / depth * focal == pytest.approx(np.array([-1, -1, 1, 1]) * lines / 2)
+    assert depth == pytest.approx(1)
 
 
-@given(lights())
-def test_all_marks_are_within_their_area(light: Light) -> None:
-    for side in SIDES:
-        marks = [*light_marks(VIEWS, side, light), *(m.stroke for m in flap_marks(VIEWS, side, light))]
-        strokes = np.concatenate(marks)
-        assert (strokes >= [side.area.left, side.area.top] * 2).all()
-        assert (strokes <= [side.area.right, side.area.bottom] * 2).all()
-        assert len(marks[2]) == 0 or light.cone_angle is not None
+@given(lights(), st.sampled_from(SIDES), st.booleans())
+def test_all_marks_are_within_their_area(light: Light, side: ViewSide, is_chosen: bool) -> None:
+    scene = boxed(light)
+    others, ours = points_in(scene, VIEWS, side, light.name if is_chosen else "")
+    items, signs = side_items(scene, VIEWS, side, others, ours)
+    assert all(side.area.covers(area) for area in (*(item.area for item in items), *signs.values()))
 
 
 AREA = Area(0, 0, 247, 223)
 
-crosses = st.builds(Cross, st.integers(1, 16), st.integers(-20, 260), st.integers(-20, 240))
+crosses = st.tuples(st.integers(1, 16), st.integers(0, 247), st.integers(0, 223))
 
 
 def test_a_numeral_makes_way_for_what_is_there() -> None:
-    ((_, area),) = numerals([Cross(3, 100, 100)], AREA, [])
+    (area,) = numerals(((3, 100, 100),), AREA, ())
     assert area == (106, 86, 112, 94)
-    ((_, area),) = numerals([Cross(1, 100, 100)], AREA, [Area(103, 80, 120, 99)])
+    (area,) = numerals(((1, 100, 100),), AREA, (Area(103, 80, 120, 99),))
     assert not area.overlaps(Area(103, 80, 120, 99))
 
 
 @given(st.lists(crosses, max_size=16))
-def test_every_light_in_the_area_has_a_numeral_within_it(lights: list[Cross]) -> None:
-    corners = [Cross(10, element, line) for element, line in itertools.product((0, 247), (0, 223))]
-    beyond = [Cross(1, 248, 100), Cross(1, -1, 100), Cross(1, 100, 224), Cross(1, 100, -1)]
-    found = numerals([*corners, *beyond, *lights], AREA, [])
-    assert [cross for cross, _ in found] == [
-        *corners,
-        *(each for each in lights if AREA.has(each.element, each.line)),
-    ]
-    assert all(AREA.covers(area) for _, area in found)
+def test_every_light_in_the_area_has_a_numeral_within_it(lights: list[tuple[int, int, int]]) -> None:
+    corners = [(10, element, line) for element, line in itertools.product((0, 247), (0, 223))]
+    areas = numerals((*corners, *lights), AREA, ())
+    assert len(areas) == len(corners) + len(lights)
+    assert all(AREA.covers(area) for area in areas)

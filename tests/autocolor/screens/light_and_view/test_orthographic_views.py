@@ -17,12 +17,10 @@ from autocolor.screens.light_and_view.orthographic_views import (
     OrthographicViews,
     PointMark,
     ViewSide,
-    area_of_picture,
     fitted_views,
     shown_points,
 )
 from autocolor.testing import vectors
-from autocolor.widgets.items import Area
 from tests.small import cube, grid
 
 coordinates = st.floats(-1e6, 1e6).map(lambda value: value + 0.0)
@@ -141,11 +139,6 @@ def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next(
     assert views.scale == pytest.approx(1e-30)
 
 
-def test_the_picture_has_its_shape_in_a_high_area_and_in_a_wide_one() -> None:
-    assert area_of_picture(Area(0, 0, 63, 99)) == Area(0, 26, 63, 73)
-    assert area_of_picture(Area(0, 0, 99, 47)) == Area(18, 0, 81, 47)
-
-
 VIEW = View((5.0, -6.0, 7.0), target=(0.5, 0.5, 0.25))
 
 
@@ -157,10 +150,9 @@ def test_the_object_the_eye_and_its_target_and_the_lights_and_their_aims_are_sho
         Light("beside", (0.0, 0.0, 1.0), follows="key"),
     ]
     found = shown_points(scene_of(cube(), view=VIEW, lights=lights))
-    assert [tuple(point) for point in found.tolist()] == [
-        (0, 0, 0), (1, 1, 1), VIEW.eye, VIEW.target, (1, 2, 3), (0, 0.5, 0.5), (4, 5, 6),
-        VIEW.eye, (0, 0.5, 1.5),
-    ]  # fmt: skip
+    assert {tuple(point) for point in found.tolist()} == {
+        (0, 0, 0), (1, 1, 1), VIEW.eye, VIEW.target, (1, 2, 3), (0, 0.5, 0.5), (4, 5, 6), (0, 0.5, 1.5)
+    }  # fmt: skip
 
 
 def test_a_stage_is_left_out_of_the_scale() -> None:
