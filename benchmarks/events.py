@@ -292,7 +292,7 @@ CASES: Sequence[Case] = (
     Case("the menu: over its rows", "lights", 20, hover("intensity", "on", "cone angle")),
     Case("the lights screen comes", "picture", 20, turn("lights")),
     Case("the mapping screen comes", "picture", 20, turn("mapping")),
-    Case("the page of three views comes", "picture", 50, turn("light & view")),
+    Case("the page of three views comes", "picture", 50, turn("views")),
 )
 """On the coupe. A new screen is a line here."""
 

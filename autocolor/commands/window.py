@@ -34,7 +34,8 @@ def view(
 
     `scene` is a Scene, the path of a scene or a mesh (see `read_scene`), or a Studio, whose scene is then
     edited (see `Studio.view_window`). The edits of another scene are lost unless the user saves them. With
-    `fit`, the picture fills the window, and its pixels may become uneven.
+    `fit`, the picture fills the window, and its pixels may become uneven; so it does without `fit` if the
+    screen has no room for twice its size.
 
     Raises UnavailableError without a screen, and the errors of `read_scene`.
     """
@@ -134,7 +135,7 @@ class Waiting:
         from ramtek_emu import Ramtek9300
         from ramtek_emu.monitor.window import Monitor
 
-        self.monitor = Monitor(Ramtek9300(), full_screen=full_screen, fit=fit, on_key=lambda _: True)
+        self.monitor = Monitor(Ramtek9300(), full_screen=full_screen, fit=fit or None, on_key=lambda _: True)
         self._name = name
         self._opens_at = time.monotonic() + FIRST_SIGN_SECONDS
 

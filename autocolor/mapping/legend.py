@@ -98,16 +98,18 @@ class Label(NamedTuple):
 class Legend:
     """The areas and the texts of a legend, the lowest layer first; the first area is the whole legend.
 
-    `room` are the elements and lines that the legend can be moved by, from the left and the top.
+    `room` are the elements and lines that the legend can be moved by, from the left and from line `begin`.
     """
 
     swatches: tuple[Swatch, ...]
     labels: tuple[Label, ...]
     room: tuple[int, int]
+    begin: int = 0
 
     def place_at(self, left: int, top: int) -> Corner:
         """The place at which its upper left corner is at an element and a line, as far as there is room."""
-        x, y = ((at - MARGIN) / (room or 1) for at, room in zip((left, top), self.room, strict=True))
+        moved = left - MARGIN, top - MARGIN - self.begin
+        x, y = (at / (room or 1) for at, room in zip(moved, self.room, strict=True))
         return round(min(max(x, 0.0), 1.0), 4), round(min(max(y, 0.0), 1.0), 4)
 
     def has(self, element: int, line: int) -> bool:
@@ -120,12 +122,17 @@ Corner = tuple[float, float]
 """A place in the room of a legend, from the left and from the top, 0 to 1 each."""
 
 
-def legend(image: DisplayImage, end: int | None = None, corners: Sequence[Corner] = CORNERS) -> Legend | None:
+def legend(
+    image: DisplayImage,
+    end: int | None = None,
+    corners: Sequence[Corner] = CORNERS,
+    begin: int = 0,
+) -> Legend | None:
     """The legend of an image; None without a scalar, if its legend is off, and if it would not fit.
 
     Its place is the scalar's `legend_place`. Assumed: without one, it is in the corner of `corners` where it
-    hides the fewest pixels of the object; ties go to the first. With `end`, it is placed as if the picture
-    ended before that element.
+    hides the fewest pixels of the object; ties go to the first. With `begin` and `end`, it is placed as if
+    the picture began at that line, and ended before that element.
     """
     scalar = image.scene.scalar
     if scalar is None or not scalar.legend:
@@ -137,13 +144,13 @@ def legend(image: DisplayImage, end: int | None = None, corners: Sequence[Corner
     lines, elements = image.words.shape
     # A surface with missing values has all bands.
     name = max(bands, key=lambda name: bands[name].has_missing)
-    size = lines, elements if end is None else min(end, elements)
+    size = lines - begin, elements if end is None else min(end, elements)
     # Values beyond the limits are in the end bands, or in bands of their own.
     low, high = image.picture.scalar_limits or (math.inf, -math.inf)
     beyond = low < bands[name].low, high > bands[name].high
     first = image.ranges[name].first
     places = corners if scalar.legend_place is None else [scalar.legend_place]
-    legends = [laid_out(scalar.name, bands[name], first, size, place, beyond) for place in places]
+    legends = [laid_out(scalar.name, bands[name], first, size, place, beyond, begin) for place in places]
     return min(filter(None, legends), key=lambda legend: _hidden(image, legend), default=None)
 
 
@@ -164,10 +171,12 @@ def laid_out(
     size: tuple[int, int],
     place: Corner,
     beyond: tuple[bool, bool] = (False, False),
+    begin: int = 0,
 ) -> Legend | None:
     """The legend of a scalar with bands from a first word on, at a place of a picture of a size.
 
-    `beyond` is whether values are below and above the limits. If so, the limit is written after "<" or ">".
+    The picture begins at line `begin`. `beyond` is whether values are below and above the limits. If so, the
+    limit is written after "<" or ">".
     """
     height = lines_of_band(bands.bands)
     numbers, exponent, places = numbers_beside(bands.low, bands.high, bands.bands, height, LEAST_APART)
@@ -200,7 +209,7 @@ def laid_out(
         return None
 
     left = 2 * MARGIN + round(place[0] * (size[1] - 4 * MARGIN - inner))
-    top = 2 * MARGIN + round(place[1] * (size[0] - 4 * MARGIN - inside))
+    top = begin + 2 * MARGIN + round(place[1] * (size[0] - 4 * MARGIN - inside))
     frame = Swatch(left - MARGIN, top - MARGIN, left + inner + MARGIN - 1, top + inside + MARGIN - 1, FRAME)
     ground = Swatch(frame.left + 1, frame.top + 1, frame.right - 1, frame.bottom - 1, GROUND)
     swatches, labels = [frame, ground], []
@@ -234,7 +243,7 @@ def laid_out(
         put_text(top + LETTER_LINES // 2, label)
         top += ROW_LINES
     room = size[1] - 4 * MARGIN - inner, size[0] - 4 * MARGIN - inside
-    return Legend(tuple(swatches), tuple(labels), room)
+    return Legend(tuple(swatches), tuple(labels), room, begin)
 
 
 def title_lines(name: str) -> Sequence[str]:

@@ -8,7 +8,6 @@ at its place. It knows screens by their interface alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from typing import Final
 
 import numpy as np
@@ -18,13 +17,15 @@ from autocolor.checks import Color
 from autocolor.scene.kinds import in_digits
 from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
-from autocolor.screens.main_menu import last_rows, rows_of_menu
+from autocolor.screens.main_menu import last_rows, strip_of
+from autocolor.screens.menu_state import MenuState
 from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items, offer_button
 from autocolor.screens.screen import Content, Handle, Sample, Screen, Surroundings, surface_at
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
+    NIGHT,
     ORANGE,
     WHITE,
     WIDTH,
@@ -35,13 +36,9 @@ from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.letters import letter_panel
 from autocolor.widgets.menu import (
     MENU,
-    NameList,
+    STRIP,
     Section,
-    folded,
-    lines_of,
-    list_of,
     menu_items,
-    page_of_menu,
 )
 from autocolor.widgets.sheet import Page
 from autocolor.widgets.widget import (
@@ -71,29 +68,16 @@ class Board:
         self.typing = TypingLine(session)
         self.over: Callable[[], Sequence[Widget]] = tuple
         """Gives the widgets over every screen, the topmost first, such as the tutorial's panel."""
-        self.is_pinned = False
-        """Whether the menu was asked for; else it goes when the pointer leaves it."""
+        self.menu = MenuState(self._take)
         self.hides_panels = False
         """Whether the menu and all panels are hidden; the menu then comes on demand."""
-        self.has_focus = False
-        """Whether keys go to the menu."""
         self.held: Handle | None = None
         """The handle that was picked; the next pick places it."""
         self._shown = session.screen
-        self._is_open = False
         self._lit, self._lit_area = "", NOWHERE
         """The key and the area of the widget that is lit."""
-        self._opened = ""
-        """The key of the row whose wide bar or list is open."""
-        self._list_page: int | None = None
-        """The page of the list; None for the page of the present name."""
-        self._menu_page = 0
-        self._folds: dict[str, dict[str, bool]] = {}
-        """By screen, whether sections of its menu are to be open or folded, the last used at the end."""
-        self._sections: dict[str, bool] = {}
-        """Whether each section of the present menu is open."""
-        self._folded_at, self._folded = Place(-1, -1), ""
-        """Where a widget was picked last, and its key if it is a section, until the pointer moves."""
+        self._folded: tuple[Place, str] | None = None
+        """Where a section was picked last, and its key, until the pointer moves."""
         self._message: list[Item] = []
         """The message on the page; it covers the screen below it."""
         self._grabbed: Widget | Handle | Screen | None = None
@@ -114,9 +98,14 @@ class Board:
         return self.screens[self.session.screen]
 
     @property
+    def names_in_strip(self) -> list[str]:
+        """The names of the screens that have a word in the strip, from the left."""
+        return [name for name, screen in self.screens.items() if screen.word]
+
+    @property
     def has_menu(self) -> bool:
         """Whether the menu is shown."""
-        return not self._comes_and_goes or self._is_open or self.is_pinned
+        return not self._comes_and_goes or self.menu.is_open or self.menu.is_pinned
 
     @property
     def _comes_and_goes(self) -> bool:
@@ -138,15 +127,20 @@ class Board:
         """The layout that is shown, until `forget` or another state of the board."""
         session, has_menu = self.session, self.has_menu
         by_letters = self.typing.is_by_letters
-        shown = has_menu, self.hides_panels, self._menu_page, self._opened, self._list_page, by_letters
-        state = session.screen, session.moving, session.scene, shown, self.over
+        shown = has_menu, self.hides_panels, self.menu.stamp(session.screen), by_letters, self.over
+        state = session.screen, session.moving, session.scene, shown
         if self._layout is None or self._layout[0] != state:
             letters = letter_panel(self.typing.key) if by_letters else ()
             over = (*letters, *(() if self.hides_panels else self.over()))
             content = self.screen.build(self._surroundings(has_menu, over))
-            rows = self._menu_rows(content) if has_menu else ()
+            last = [*last_rows(session, self.screen), *self._hiding_rows(content)]
+            rows = self.menu.rows(session.screen, content.rows(), last) if has_menu else ()
             offer = offer_button(session.news.offer) if session.has_news and not self.typing.is_on else None
-            self._layout = state, Layout(content, rows, over, offer, self._opened, self._list_of)
+            strip = strip_of(session, self.screens.values()) if has_menu else ()
+            self._layout = (
+                state,
+                Layout(content, rows, strip, over, offer, self.menu.opened, self.menu.list_of),
+            )
         return self._layout[1]
 
     @property
@@ -157,7 +151,7 @@ class Board:
     def _surroundings(self, has_menu: bool, over: Sequence[Widget]) -> Surroundings:
         """The menu, the panels and the pointer, for the screen that is shown."""
         message = (item.area for item in self._message)
-        above = (*([MENU] if has_menu else []), *(widget.area for widget in over), *message)
+        above = (*((MENU, STRIP) if has_menu else ()), *(widget.area for widget in over), *message)
         is_covered = any(area.has(*self._pointer) for area in above)
         pointer = Place(-1, -1) if is_covered else self._pointer
         return Surroundings(has_menu, not self.hides_panels, self._lit, pointer)
@@ -166,57 +160,19 @@ class Board:
         """Make the layout anew when it is needed, because the scene or the screen may have changed."""
         self._layout = None
 
-    def _menu_rows(self, content: Content) -> list[Widget]:
-        """The rows of this page of the menu, laid out."""
-        rows = rows_of_menu(self.session, self.screen, content, self.screens.values())
-        last = [*last_rows(self.session, self.screen), *self._hiding_rows(content)]
-        folds = self._folds.get(self.session.screen, {})
-        rows = folded(rows, folds, self._fold, MENU.height - lines_of(last))
-        self._sections = {row.label: row.is_open for row in rows if isinstance(row, Section)}
-        if folds:
-            # A section that was folded to make room stays folded.
-            folds.update(self._sections)
-        return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
-
-    def _fold(self, section: str, is_open: bool) -> None:
-        """Open or fold a section of this menu, and note that it was used last; the others stay."""
-        folds = self._folds.setdefault(self.session.screen, {})
-        folds.update(self._sections)
-        folds.pop(section, None)
-        folds[section] = is_open
-        self.forget()
-
-    def _use(self, widget: Widget) -> None:
-        """Note that the section of a widget was used last, so that the section stays open if it grows."""
-        section = ""
-        for row in self.layout.rows:
-            if isinstance(row, Section):
-                section = row.label
-            elif isinstance(row, Gap):
-                # The last rows of the menu are in no section.
-                section = ""
-            elif row.key == widget.key and section:
-                self._fold(section, True)
-                return
-
-    def _list_of(self, choice: Choice) -> NameList:
-        return list_of(
-            choice, self._list_page, partial(self._take, choice), partial(setattr, self, "_list_page")
-        )
-
     def _take(self, choice: Choice, name: str) -> None:
         """Take a name from the list; a list whose name is refused stays open."""
         if name != choice.present:
             choice.choose(name)
         elif choice.rename is not None:
             choice.rename(name)
-        self._close_opened()
+        self._close_list()
 
-    def _close_opened(self) -> None:
+    def _close_list(self) -> None:
         """Take the wide bar or the list away."""
-        if self.has_focus and self.layout.listed is not None:
-            self._lit, self._lit_area = self._opened, NOWHERE
-        self._opened = ""
+        if self.menu.has_focus and self.layout.listed is not None:
+            self._lit, self._lit_area = self.menu.opened, NOWHERE
+        self.menu.opened = ""
 
     # Hiding.
 
@@ -263,13 +219,13 @@ class Board:
             return False
         self.release()
         self.screens[self._shown].leave()
-        self._shown, self._opened, self._menu_page, self.hides_panels = wanted, "", 0, False
+        self._shown, self.hides_panels = wanted, False
         self._light(None)
-        self.close()
+        self.menu.begin()
         self.screens[wanted].enter()
         # Without a menu beside it, the screen itself must say what to do, and the way back.
         screen = self.screen
-        is_reached_by_menu = screen.is_in_menu and screen.name != PICTURE
+        is_reached_by_menu = screen.word and screen.name != PICTURE
         if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
             self.session.tell(f"{screen.help}; the right edge: the menu")
         return True
@@ -351,22 +307,22 @@ class Board:
 
     def _hover(self, gesture: Gesture) -> None:
         element, line = self._pointer
-        if self._folded_at != self._pointer:
-            self._folded = ""
+        if self._folded is not None and self._folded[0] != self._pointer:
+            self._folded = None
         if self._comes_and_goes:
-            was_open = self._is_open
+            was_open = self.menu.is_open
             if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
-                self._is_open = True
-            elif not MENU.left <= element < WIDTH and self.layout.opened_row is None:
+                self.menu.is_open = True
+            elif not (MENU.has(element, line) or STRIP.has(element, line)) and self.layout.opened_row is None:
                 # A row that has gone leaves its list to be opened again.
-                self._is_open, self._opened = False, ""
-            if self._is_open and not was_open and self.session.news.persistent:
+                self.menu.is_open, self.menu.opened = False, ""
+            if self.menu.is_open and not was_open and self.session.news.persistent:
                 # Beside the menu, hints stand in its place.
                 self.session.tell("")
         widget = self.layout.widget_at(element, line)
         self._light(widget)
         if widget is None:
-            self.has_focus = False
+            self.menu.has_focus = False
 
     def _pick(self, gesture: Gesture) -> None:
         self._hover(gesture)
@@ -375,13 +331,12 @@ class Board:
         if self._leaves_list() and not MENU.has(element, line):
             # Beside the menu, this pick does no more.
             return
-        if self._folded:
+        if self._folded is not None:
             # The second of two clicks at one place must not fall on a row that came there.
-            widget = self.layout.lit(self._folded, NOWHERE) or widget
+            widget = self.layout.lit(self._folded[1], NOWHERE) or widget
         if widget is not None:
             self._let_go()
-            self._folded_at = self._pointer
-            self._folded = widget.key if isinstance(widget, Section) else ""
+            self._folded = (self._pointer, widget.key) if isinstance(widget, Section) else None
             self.pick_widget(widget, self._pointer)
         elif self.is_covered(element, line):
             return
@@ -404,7 +359,7 @@ class Board:
         listed, row = self.layout.listed, self.layout.opened_row
         if listed is None or listed.area.has(*self._pointer) or (row and row.has(*self._pointer)):
             return False
-        self._close_opened()
+        self._close_list()
         self._hover(Gesture("hover", *self._pointer))
         return True
 
@@ -416,11 +371,10 @@ class Board:
         by_key = place is None
         if place is None:
             place = Place((widget.area.left + widget.area.right) // 2, widget.area.top)
-        self._use(widget)
+        self.menu.use(self.session.screen, widget, self.layout.rows)
         is_switched = isinstance(widget, Bar) and widget.is_switched_at(place)
         if opens(widget) and MENU.covers(widget.area) and not is_switched:
-            self._opened = "" if self._opened == widget.key else widget.key
-            self._list_page = None
+            self.menu.open_or_close(widget)
             if by_key and self.layout.listed is not None:
                 self._light(self.layout.listed.chosen)
         elif widget.typed is not None and not isinstance(widget, Bar):
@@ -439,7 +393,7 @@ class Board:
         handle = self.handle_at(*self._pointer) if is_plain else None
         if widget is not None:
             self._grabbed = None if widget.why_not else widget
-            self._use(widget)
+            self.menu.use(self.session.screen, widget, self.layout.rows)
         elif handle is not None:
             self._grabbed = handle
             # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
@@ -471,7 +425,7 @@ class Board:
         widget = self.layout.widget_at(*self._pointer)
         if widget is not None:
             if not widget.why_not:
-                self._use(widget)
+                self.menu.use(self.session.screen, widget, self.layout.rows)
                 widget.nudge(gesture.steps)
         elif not self.is_covered(*self._pointer):
             self.content.wheel(gesture)
@@ -480,16 +434,16 @@ class Board:
 
     def close(self) -> None:
         """Take the menu away where it comes on demand."""
-        self.is_pinned = self._is_open = self.has_focus = False
+        self.menu.close()
         if self._comes_and_goes:
-            self._opened = ""
+            self.menu.opened = ""
 
     def toggle_menu(self) -> None:
         """Bring the menu and give it the keys, or take it away."""
-        if self.has_focus or (self.is_pinned and self._comes_and_goes):
+        if self.menu.has_focus or (self.menu.is_pinned and self._comes_and_goes):
             self.close()
             return
-        self.is_pinned = self.has_focus = True
+        self.menu.is_pinned = self.menu.has_focus = True
         if self._lit_widget() is None:
             self._move_light(1)
 
@@ -501,8 +455,8 @@ class Board:
         if self.held is not None:
             self._let_go()
         elif self.layout.opened_row is not None:
-            self._close_opened()
-        elif self.has_focus or (self._comes_and_goes and (self.is_pinned or self._is_open)):
+            self._close_list()
+        elif self.menu.has_focus or (self._comes_and_goes and (self.menu.is_pinned or self.menu.is_open)):
             self.close()
         elif self.hides_panels:
             self.switch_panels()
@@ -516,12 +470,12 @@ class Board:
         if row is not None and row.typed is not None and self.typing.would_begin(row, typed):
             self.typing.begin(row, typed)
             return True
-        if not self.has_focus:
+        if not self.menu.has_focus:
             return False
         if name in ("up", "down"):
             self._move_light(1 if name == "down" else -1)
         elif row is not None and name in ("left", "right") and not row.why_not:
-            self._use(row)
+            self.menu.use(self.session.screen, row, self.layout.rows)
             row.nudge(1 if name == "right" else -1)
         elif row is not None and name in ("return", "space", "enter"):
             self.pick_widget(row)
@@ -561,6 +515,9 @@ class Board:
             items += widget.items(widget is lit and not widget.why_not)
         if layout.rows:
             items += menu_items(layout.rows, lit)
+            items.append(filled(STRIP, NIGHT))
+        for word in layout.strip:
+            items += word.items(word is lit)
         if layout.wide is not None:
             items += layout.wide.items(lit=False)
         if layout.listed is not None:

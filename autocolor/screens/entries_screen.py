@@ -64,7 +64,6 @@ class EntriesScreen(Screen):
     help = "The 1024 entries of the lookup table, and who owns them"
     has_menu = False
     shows_scene = False
-    is_in_menu = False
 
     def build(self, around: Surroundings) -> Content:
         ranges = self._ranges

@@ -53,6 +53,7 @@ from autocolor.widgets.items import (
     outline,
     text,
 )
+from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import (
     MARGIN,
     ROW_LINES,
@@ -67,8 +68,8 @@ from autocolor.widgets.widget import (
     short_name,
 )
 
-LEFT: Final = Area(8, 40, 247, 455)
-RIGHT: Final = Area(256, 40, 495, 455)
+LEFT: Final = Area(8, WORK.top + 40, 247, 455)
+RIGHT: Final = Area(256, WORK.top + 40, 495, 455)
 """The columns of the folder's files and of recent ones."""
 
 MOST_ROWS: Final = LEFT.height // ROW_LINES
@@ -125,6 +126,7 @@ class FileScreen(Screen):
 
     name = "file"
     title = "file"
+    word = "file"
     help = "Click a file to open it; undo goes back to the scene before"
     shows_scene = False
 
@@ -188,9 +190,9 @@ class FileScreen(Screen):
         down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
         folder = short_name(self._shown_path(self.session.folder), ACROSS)
         items = [
-            text("OPEN", left, TEXT_DOWN, YELLOW),
-            text("RECENT", RIGHT.left + MARGIN, TEXT_DOWN, YELLOW),
-            text(folder, left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
+            text("OPEN", left, WORK.top + TEXT_DOWN, YELLOW),
+            text("RECENT", RIGHT.left + MARGIN, WORK.top + TEXT_DOWN, YELLOW),
+            text(folder, left, WORK.top + ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
             filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
         ]
         if not self._files:

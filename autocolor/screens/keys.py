@@ -51,6 +51,18 @@ def toggle(viewer: Driven, screen: str) -> None:
     viewer.session.turn_to(PICTURE if viewer.session.screen == screen else screen)
 
 
+def turn_along(viewer: Driven, number: int) -> None:
+    """Turn to a screen of the strip, counted from 0 at the left; after the last comes the first."""
+    names = viewer.board.names_in_strip
+    viewer.session.turn_to(names[number % len(names)])
+
+
+def place_in_strip(viewer: Driven) -> int:
+    """The place of the present screen in the strip; that of the picture if it is not there."""
+    names = viewer.board.names_in_strip
+    return names.index(viewer.session.screen) if viewer.session.screen in names else 0
+
+
 def show_other(viewer: Driven) -> None:
     """Show the state to compare with, over the picture."""
     session = viewer.session
@@ -160,6 +172,17 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
         (Chord("tab"),),
         "the menu (or the right edge); its keys: arrows, Return",
         lambda viewer, _: viewer.board.toggle_menu(),
+    ),
+    Binding(
+        tuple(Chord(digit, control=True) for digit in "1234567890"),
+        "the screens of the strip, from the left",
+        turn_along,
+        label="Ctrl+1 to 0",
+    ),
+    Binding(
+        (Chord("tab", control=True), Chord("tab", control=True, shift=True)),
+        "the next screen of the strip, the previous one",
+        lambda viewer, number: turn_along(viewer, place_in_strip(viewer) + (1, -1)[number]),
     ),
     Binding(
         (Chord("h"),),
@@ -295,7 +318,7 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     ),
 )
 WINDOW_KEYS: Final = (
-    ("F3", "record the window as a film; again: end it"),
+    ("F3", "record the window as a film, with a red mark; again: end it"),
     ("F10", "fill the window, or show whole multiples"),
     ("F11, Alt+Enter", "full screen, and back"),
     ("Ctrl+Q", "leave; you are asked first about unsaved changes"),

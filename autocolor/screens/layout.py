@@ -11,7 +11,7 @@ from typing import Final
 from autocolor.screens.screen import Content, Handle
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
-from autocolor.widgets.menu import MENU, WIDE_BAR, NameList
+from autocolor.widgets.menu import MENU, STRIP, WIDE_BAR, NameList
 from autocolor.widgets.widget import Choice, Gap, Heading, Widget
 
 REACH: Final = 8
@@ -25,6 +25,8 @@ class Layout:
     content: Content
     rows: Sequence[Widget] = ()
     """The rows of the menu with their areas; none while the menu is away."""
+    strip: Sequence[Widget] = ()
+    """The words of the strip; none while the menu is away."""
     over: Sequence[Widget] = ()
     """The widgets over every screen, the topmost first."""
     offer: Widget | None = None
@@ -59,7 +61,7 @@ class Layout:
         wide = () if self.wide is None else (self.wide,)
         listed = () if self.listed is None else self.listed.rows
         offer = () if self.offer is None else (self.offer,)
-        return (*offer, *listed, *wide, *self.over, *self.rows, *self.content.widgets)
+        return (*offer, *listed, *wide, *self.over, *self.rows, *self.content.widgets, *self.strip)
 
     @cached_property
     def by_key(self) -> Mapping[str, Sequence[Widget]]:
@@ -71,7 +73,7 @@ class Layout:
 
     def is_covered(self, element: int, line: int) -> bool:
         """Whether the menu, its list or wide bar, or a panel over every screen covers a place."""
-        if self.rows and MENU.has(element, line):
+        if self.rows and (MENU.has(element, line) or STRIP.has(element, line)):
             return True
         if self.wide is not None and WIDE_BAR.has(element, line):
             return True

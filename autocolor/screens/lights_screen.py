@@ -84,6 +84,7 @@ class LightsScreen(OverPicture):
 
     name = "lights"
     title = "lights"
+    word = "lights"
     help = "The chosen light: drag its highlight, and where its cone, flaps and half-spaces end"
 
     # The light list is at the upper left.
@@ -204,7 +205,7 @@ class LightsScreen(OverPicture):
 
 # The light list: a panel over the picture with a row for each light.
 
-LIST_AT: Final = Place(8, 8)
+LIST_AT: Final = Place(8, WORK.top + 8)
 """The upper left corner of the list."""
 
 NAME_CHARACTERS: Final = 12

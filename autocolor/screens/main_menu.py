@@ -1,4 +1,4 @@
-"""The main menu: the rows that stand in every menu before and after the rows of its screen."""
+"""The parts of every menu beside the rows of its screen: the strip above it, and its last rows."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Final
 
-from autocolor.screens.screen import Content, Screen
+from autocolor.screens.screen import Screen
 from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.screens.steps import redo, switch_comparing, switch_split, undo
 from autocolor.widgets.items import CHARACTER, GRAY, NIGHT, SLATE, WHITE, Item, filled, text
-from autocolor.widgets.widget import MARGIN, TEXT_DOWN, Button, Gap, Heading, Pair, Place, Steps, Widget
+from autocolor.widgets.menu import STRIP
+from autocolor.widgets.widget import MARGIN, TEXT_DOWN, Button, Gap, Pair, PanelButton, Place, Steps, Widget
 
 STEPS: Final = "steps"
 """The word between undo and redo that leads to the list of steps."""
@@ -55,19 +56,21 @@ class UndoRow(Steps):
         return None
 
 
-def rows_of_menu(
-    session: Session, screen: Screen, content: Content, screens: Iterable[Screen]
-) -> list[Widget]:
-    """The rows of a screen's menu: on the picture the ways to other screens, elsewhere the way back."""
-    if screen.name == PICTURE:
-        ways: list[Widget] = [
-            Button(each.title, each.help, run=partial(session.turn_to, each.name))
-            for each in screens
-            if each.is_in_menu and each is not screen
-        ]
-        return [*ways, Gap("ways"), *content.rows()]
-    back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
-    return [Heading(screen.title.upper()), back, Gap("ways"), *content.rows()]
+def strip_of(session: Session, screens: Iterable[Screen]) -> list[Widget]:
+    """The words that lead to the screens, side by side above the menu; the present screen is chosen."""
+    named = [each for each in screens if each.word]
+    width = STRIP.width // len(named)
+    return [
+        PanelButton(
+            each.word,
+            f"{each.title}, Ctrl+{(number + 1) % 10}: {each.help}",
+            within="strip",
+            area=STRIP._replace(left=width * number, right=width * (number + 1) - 1),
+            run=partial(session.turn_to, each.name),
+            is_chosen=each.name == session.screen,
+        )
+        for number, each in enumerate(named)
+    ]
 
 
 def last_rows(session: Session, screen: Screen) -> list[Widget]:

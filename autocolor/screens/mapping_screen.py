@@ -61,6 +61,7 @@ class MappingScreen(OverPicture):
 
     name = "mapping"
     title = "mapping"
+    word = "mapping"
     help = "How intensities become levels; click a surface in the picture to show its curve"
 
     # The panel of the curve is at the lower left.

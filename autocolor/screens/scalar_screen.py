@@ -45,6 +45,7 @@ class ScalarScreen(OverPicture):
 
     name = "scalar"
     title = "scalar"
+    word = "scalar"
     help = "Surfaces in the colors of a scalar; click in the picture: its value there"
 
     def build(self, around: Surroundings) -> Content:

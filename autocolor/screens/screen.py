@@ -138,8 +138,8 @@ class Screen:
     """Whether its base is the picture at full size."""
     shows_scene: ClassVar[bool] = True
     """Whether edits of the scene are seen on it; else an edit leads back to the picture."""
-    is_in_menu: ClassVar[bool] = True
-    """Whether the main menu leads to it."""
+    word: ClassVar[str] = ""
+    """The word of the strip that leads to it, of at most seven letters; empty if none does."""
 
     def __init__(self, session: Session) -> None:
         self.session = session

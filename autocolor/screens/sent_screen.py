@@ -57,7 +57,6 @@ class SentScreen(Pages):
     name = SENT
     title = "last edit"
     help = "The instructions that the last edit sent to the display"
-    is_in_menu = False
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)

@@ -116,8 +116,8 @@ LESSONS: Final = (
     Lesson(
         "move a light",
         (
-            "The right edge brings the menu: pick light & view there. Pick a light",
-            "in one of the views, then its new place in the same view; or drag it.",
+            "The right edge brings the menu: pick views above it. Pick a light in",
+            "one of the views, then its new place in the same view; or drag it.",
         ),
         _moved,
     ),
@@ -140,8 +140,8 @@ LESSONS: Final = (
     Lesson(
         "mix a color",
         (
-            "Paint the car: pick < picture, pick the body, then color mixing in",
-            "the menu. Drag its bars, or pick one of the paints in the menu.",
+            "Paint the car: pick picture at the top, pick the body, then colors at",
+            "the top. Drag the bars, or pick one of the paints in the menu.",
         ),
         _mixed,
     ),
@@ -156,7 +156,7 @@ LESSONS: Final = (
     Lesson(
         "save",
         (
-            "Pick < picture, then file, and save there: the message line says the",
+            "Pick file at the top, and save there: the message line tells you the",
             "names of the files that hold the scene and the picture.",
         ),
         _saved,

@@ -38,6 +38,7 @@ from autocolor.widgets.items import (
     outline,
     text,
 )
+from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import (
     ROW_LINES,
     TEXT_DOWN,
@@ -59,13 +60,13 @@ ACROSS: Final = 4
 DOWN: Final = 4
 ON_PAGE: Final = ACROSS * DOWN
 STEP_ACROSS: Final = 124
-STEP_DOWN: Final = 114
+STEP_DOWN: Final = 111
 FRAME: Final = 4
 NAME_LINES: Final = 14
 
 PLACES: Final = tuple(
     Area(left, top, left + ELEMENTS + 2 * FRAME - 1, top + LINES + 2 * FRAME - 1 + NAME_LINES)
-    for top in range(8, 8 + DOWN * STEP_DOWN, STEP_DOWN)
+    for top in range(WORK.top + 4, WORK.top + 4 + DOWN * STEP_DOWN, STEP_DOWN)
     for left in range(8, 8 + ACROSS * STEP_ACROSS, STEP_ACROSS)
 )
 """Where the small pictures stand, with their frames and names."""
@@ -83,6 +84,7 @@ class VariantsScreen(Screen):
 
     name = "variants"
     title = "variants"
+    word = "variant"
     help = "Click a variant to choose it; then come back to it, or drop it"
     shows_scene = False
 
@@ -131,7 +133,7 @@ class VariantsScreen(Screen):
             items=[small.item(first, area.left + FRAME, area.top + FRAME) for area, first, small in shown]
             if self.session.studio.variants
             else [
-                text(line, 16, ROW_LINES * number + TEXT_DOWN, LIGHT_GRAY)
+                text(line, 16, WORK.top + ROW_LINES * number + TEXT_DOWN, LIGHT_GRAY)
                 for number, line in enumerate(EMPTY)
             ],
             loads=[(first, small.colors) for _, first, small in shown],

@@ -36,9 +36,12 @@ MESSAGE_CHARACTERS: Final = (WIDTH - 2 * MARGIN) // CHARACTER
 """The characters of the message line."""
 
 MENU_ELEMENTS: Final = 136
-MENU: Final = Area(WIDTH - MENU_ELEMENTS, 0, WIDTH - 1, HEIGHT - MESSAGE_LINES - 1)
-WORK: Final = Area(0, 0, MENU.left - 1, MENU.bottom)
-"""The area of a screen beside the menu."""
+STRIP: Final = Area(0, 0, WIDTH - 1, ROW_LINES - 1)
+"""The words that lead to the screens, above every menu."""
+
+MENU: Final = Area(WIDTH - MENU_ELEMENTS, STRIP.bottom + 1, WIDTH - 1, HEIGHT - MESSAGE_LINES - 1)
+WORK: Final = Area(0, MENU.top, MENU.left - 1, MENU.bottom)
+"""The area of a screen beside the menu, below the strip."""
 
 WIDE_BAR: Final = Area(0, MENU.bottom - 23, WORK.right, MENU.bottom)
 """Where the wide bar of a number stands."""

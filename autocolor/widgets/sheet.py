@@ -227,14 +227,16 @@ def _restored(base: Words | int, area: Area) -> list[Words]:
 
 
 def uncovered(area: Area, items: Sequence[Item]) -> Area:
-    """An area without the strips along its whole right or lower edge that solid items cover."""
+    """An area without the strips along its whole upper, right or lower edge that solid items cover."""
     for _ in range(2):
         for item in items:
             edge = item.area
-            if not item.is_solid or edge.right < area.right or edge.bottom < area.bottom:
+            if not item.is_solid or edge.right < area.right:
                 continue
-            if edge.top <= area.top:
+            if edge.left <= area.left and edge.top <= area.top:
+                area = area._replace(top=max(area.top, edge.bottom + 1))
+            elif edge.bottom >= area.bottom and edge.top <= area.top:
                 area = area._replace(right=min(area.right, edge.left - 1))
-            elif edge.left <= area.left:
+            elif edge.bottom >= area.bottom and edge.left <= area.left:
                 area = area._replace(bottom=min(area.bottom, edge.top - 1))
     return area

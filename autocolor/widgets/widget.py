@@ -207,8 +207,9 @@ class PanelButton(Button):
     def items(self, lit: bool) -> list[Item]:
         left = self.area.left + (self.area.width - CHARACTER * len(self.label)) // 2
         top = self.area.top + (self.area.height - CHARACTER_LINES + 1) // 2
-        ground = SLATE if lit else NIGHT
-        return [filled(self.area, ground), text(self.label, left, top, WHITE, ground)]
+        ground = WHITE if self.is_chosen else SLATE if lit else NIGHT
+        ink = BLACK if self.is_chosen else WHITE
+        return [filled(self.area, ground), text(self.label, left, top, ink, ground)]
 
 
 @dataclass(frozen=True)

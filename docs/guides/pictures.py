@@ -38,7 +38,7 @@ SMALL: Final = 2
 CAR: Final = slice(40, 200)
 """The lines of a small panel that show the car."""
 
-COBALT: Final = (530, 275)
+COBALT: Final = (530, 251)
 """The element and the line of a paint in the menu of color mixing."""
 
 EXPLAINED: Final = (240, 200)
@@ -52,11 +52,11 @@ def start_paint() -> Field:
 
 
 def start_menu() -> Field:
-    """The picture screen with its menu; the pointer is at color mixing."""
+    """The picture screen with its menu; the pointer is at the word of color mixing."""
     with open_viewer("coupe", "picture") as (viewer, display):
         # The menu opens when the pointer comes to the right edge from elsewhere.
-        for element in (400, 639, 600):
-            point_at(viewer, element, 57)
+        for element, line in ((400, 57), (639, 57), (280, 8)):
+            point_at(viewer, element, line)
         return display.field()
 
 

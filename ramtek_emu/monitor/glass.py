@@ -96,12 +96,16 @@ class FieldSource(Protocol):
 
 
 class Glass:
-    """The window of a display, closed at first; `size` is the size of the field, (elements, lines)."""
+    """The window of a display, closed at first; `size` is the size of the field, (elements, lines).
 
-    def __init__(self, size: tuple[int, int], fit: bool = False) -> None:
-        self.fit = fit
+    With `fit` None, the field fills the window if the screen has no room for twice its size.
+    """
+
+    def __init__(self, size: tuple[int, int], fit: bool | None = False) -> None:
+        self.fit = bool(fit)
         """Whether the field fills the window, blurred, instead of being a whole multiple."""
         self.is_open = False
+        self._fits_by_room = fit is None
         self._size = size
         self._window_size = size
         self._redrawn = 0
@@ -119,7 +123,9 @@ class Glass:
         open_screen()
         desktop = pygame.display.get_desktop_sizes()[0]
         room = int(desktop[0] * 0.95), int(desktop[1] * 0.9)
-        self._window_size = viewport(self._size, room)[2:]
+        if self._fits_by_room:
+            self.fit = viewport(self._size, room)[2] == self._size[0]
+        self._window_size = viewport(self._size, room, self.fit)[2:]
         self._field = pygame.Surface(self._size, 0, 32, FIELD_MASKS)
         self.is_open = True
         pygame.key.set_repeat(KEY_DELAY, KEY_INTERVAL)

@@ -1,4 +1,4 @@
-"""Overlay: pages and messages over the field of a display whose memory belongs to a host.
+"""Overlay: pages, messages and the mark of a film over the field of a display whose memory belongs to a host.
 
 The words of a page in the frame buffer would overwrite the host's picture, and all entries may be in use. So
 these pages are drawn here, in the colors of the window; the display does not contain them.
@@ -15,6 +15,9 @@ from ramtek_emu.monitor.boxes import ADVANCE, BLACK, MARGIN, entries_page, help_
 
 MESSAGE_LINES: Final = 16
 """The lines of a message, at the bottom of the field."""
+MARK: Final = 8
+"""The lines and elements of the mark of a film that is recorded, at the lower right of the field."""
+RED: Final = 0xF03C3C
 MESSAGE_SECONDS: Final = 5.0
 """How long a message is shown over the field."""
 PAGES: Final = {"f1": "help", "f4": "entries"}
@@ -38,11 +41,12 @@ KEYS: Final = (
 
 
 class Overlay:
-    """A page over the field, and a message for a while."""
+    """A page over the field, a message for a while, and a red mark while a film is recorded."""
 
     def __init__(self) -> None:
         self.page = ""
         """One of `PAGES`; "" for none."""
+        self.is_recording = False
         self._message, self._until = "", 0.0
 
     @property
@@ -55,9 +59,9 @@ class Overlay:
         self._message, self._until = message, time.monotonic() + MESSAGE_SECONDS
 
     @property
-    def stamp(self) -> tuple[str, str]:
+    def stamp(self) -> tuple[str, str, bool]:
         """A value that changes whenever the overlay does."""
-        return self.page, self.message
+        return self.page, self.message, self.is_recording
 
     def turn_to(self, page: str) -> None:
         """Show a page, or the field if the page is shown already."""
@@ -69,14 +73,18 @@ class Overlay:
         The message is on the last lines. If it is too long, it ends in two periods.
         """
         lines, elements = pixels.shape
+        size = max(1, elements // 640)
         if self.page == PAGES["f1"]:
             pixels[...] = help_page(lines, elements, title, KEYS)
         elif self.page:
             pixels[...] = entries_page(colors, lines, elements)
         if message := self.message:
-            size = max(1, elements // 640)
             most = (elements // size - 2 * MARGIN) // ADVANCE
             shown = message if len(message) <= most else f"{message[: most - 2]}.."
             bottom = pixels[max(0, lines - MESSAGE_LINES * size) :]
             bottom[...] = BLACK
             write(bottom, shown, MARGIN * size, (MESSAGE_LINES - CELL_LINES) // 2 * size, size=size)
+        if self.is_recording:
+            mark, frame = MARK * size, MARK * size // 4
+            pixels[-mark - 2 * frame :, -mark - 2 * frame :] = BLACK
+            pixels[-mark - frame : -frame, -mark - frame : -frame] = RED

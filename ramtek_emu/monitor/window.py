@@ -11,8 +11,8 @@ A program that draws its own pages handles F1, F4 and F12 itself. If the picture
 monitor shows pages over the field; see `overlay`. A window may also show a page of a program, such as an
 inspector with the field in it; then the program decides which places of the mouse are the joystick's.
 
-F3 records the fields that are shown, with their times, as a film; see `ramtek_emu.films.TimedFilm`. Closing
-the window saves the film, too.
+F3 records the fields that are shown, with their times, as a film; see `ramtek_emu.films.TimedFilm`. Meanwhile
+a red mark, which the film does not have, stands at the lower right. Closing the window saves the film, too.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Monitor:
         caption: str = "RAMTEK 9300",
         *,
         source: FieldSource | None = None,
-        fit: bool = False,
+        fit: bool | None = False,
         full_screen: bool = False,
         screenshots: str | os.PathLike[str] = ".",
         on_key: Callable[[Key], object] | None = None,
@@ -74,6 +74,7 @@ class Monitor:
     ) -> None:
         """Prepare a window; `open` opens it. Screenshots and films are saved in the folder `screenshots`.
 
+        With `fit`, the field fills the window; with None, if the screen has no room for twice its size.
         `source` is shown instead of the display's field. The mouse then moves no joystick: `on_pointer` gets
         places of the source's field, and may call `steer` with places of the display's.
         `on_key` returns whether it handled the key; if it did not, F1 and F4 show a page over the field, Esc
@@ -246,6 +247,7 @@ class Monitor:
         from ramtek_emu.films import TimedFilm
 
         self._film = TimedFilm(self.source.field(), time.monotonic())
+        self.overlay.is_recording = True
         # A program that gets messages would draw this message into the film.
         self.show_message("F3 ends it")
 
@@ -256,7 +258,7 @@ class Monitor:
         """
         from ramtek_emu.films import FILM
 
-        self._film = None
+        self._film, self.overlay.is_recording = None, False
         fields, data, reason = film.fields, film.end(time.monotonic()), ""
         for folder in (self.screenshots, None):
             try:

@@ -78,6 +78,7 @@ class LightAndViewScreen(Screen):
 
     name = "light and view"
     title = "light & view"
+    word = "views"
     help = "Pick a light, an aim or the eye, then its new place in the same view; or drag it"
 
     def __init__(self, session: Session) -> None:

@@ -20,12 +20,12 @@ from autocolor.screens.picture.picture_edits import target_of
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import WORK
 
-# The areas of the views: the quarters of the work area, on a grid of 8.
+# The areas of the views: the quarters of the work area.
 #
 # Assumed: as on an engineering drawing, the top view is above the front view, and the side view beside it.
-# The fourth quarter is for DISPLAY VIEW. Eight lines are left free at the bottom.
+# The fourth quarter is for DISPLAY VIEW.
 
-_HIGH: Final = (WORK.height - 16) // 2
+_HIGH: Final = (WORK.height - 8) // 2
 _FOOT: Final = WORK.top + _HIGH + 8
 
 PICTURE_AREA: Final = Area(256, WORK.top, 503, WORK.top + _HIGH - 1)

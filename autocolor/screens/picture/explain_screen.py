@@ -53,7 +53,6 @@ class ExplainScreen(Screen):
     title = "explain"
     help = "why this pixel looks so; a click at the upper right: a neighbor"
     has_menu = False
-    is_in_menu = False
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)

@@ -20,10 +20,11 @@ from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import HISTORY, Session
 from autocolor.screens.steps import redo, undo
 from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, Area, Item, fitted
+from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import MARGIN, ROW_LINES, Button, Gap, Pair, Widget
 
 LEFT: Final = 8
-TOP: Final = 8
+TOP: Final = WORK.top + 8
 WIDTH: Final = 248
 """The list, at the left of the picture."""
 
@@ -46,8 +47,6 @@ class HistoryScreen(OverPicture):
     name = HISTORY
     title = "steps"
     help = "Click a step to go there; several undone steps become a variant by another edit"
-
-    is_in_menu = False
 
     # The list is at the left.
     corners = ((1.0, 0.0), (1.0, 1.0))

@@ -142,7 +142,7 @@ class LightHandles:
         """Let the light follow a handle to a place. Raises UsageError on the background."""
         session = self.session
         # The menu covers the places beside the area.
-        element, line = min(element, self.area.right), min(line, self.area.bottom)
+        element, line = min(element, self.area.right), min(max(line, self.area.top), self.area.bottom)
         scene, seen = session.scene, session.studio.seen_at(line, element)
         if key.what == HIGHLIGHT:
             scene = highlight_placed(scene, seen, key.light)
@@ -209,7 +209,7 @@ class LightHandles:
             handles: list[Handle] = []
             items: list[Item] = []
             for rim, pixels in rims(sight, light.name).items():
-                seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
+                seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1) & (pixels[:, 0] >= area.top)]
                 handles += map(self._driven, rim_handles(light.name, rim, seen))
                 items += rim_items(seen, area)
             cached = self._rims = light, sight.points, area, handles, items

@@ -52,8 +52,9 @@ class OverPicture(Screen):
     def build(self, around: Surroundings) -> Content:
         """The picture with the legend of a scalar, and the gestures that turn it."""
         other, present = self.session.comparing.image, self.session.studio.display_image
-        image, end = other or present, MENU.left if around.has_menu else None
-        found = self._legend.of(lambda: legend(image, end, self.corners), image, end)
+        image, has_menu = other or present, around.has_menu
+        free = (MENU.left, self.corners, MENU.top) if has_menu else (None, self.corners)
+        found = self._legend.of(lambda: legend(image, *free), image, has_menu)
         return Content(
             base=image.words,
             items=() if found is None else legend_items(found),

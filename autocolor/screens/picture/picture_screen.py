@@ -48,6 +48,7 @@ class PictureScreen(OverPicture):
 
     name = PICTURE
     title = "picture"
+    word = "picture"
     help = "drag: turn; click: choose a surface; Tab or the right edge: the menu"
     has_menu = False
 

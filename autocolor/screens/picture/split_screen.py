@@ -43,7 +43,6 @@ class SplitScreen(OverPicture):
     help = "drag or click: move the line; Esc, or split again: the picture"
     has_menu = False
     shows_scene = False
-    is_in_menu = False
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)

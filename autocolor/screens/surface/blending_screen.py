@@ -35,6 +35,7 @@ class BlendingScreen(OverPicture):
 
     name = "blending"
     title = "light blending"
+    word = "blend"
     help = "Pick a level on the bar: the light color blends in above it"
     has_menu = False
 

@@ -90,7 +90,7 @@ BAR_LINES: Final = 11
 
 SECTION_LINES: Final = 7 * BAR_LINES
 
-LIGHT_TOP: Final = 4
+LIGHT_TOP: Final = WORK.top + 4
 BLEND_TOP: Final = LIGHT_TOP + SECTION_LINES + 1
 BLEND: Final = Area(LEFT, BLEND_TOP + 12, RIGHT_END, BLEND_TOP + 42)
 """The blend bar, below its heading."""
@@ -129,6 +129,7 @@ class MixingScreen(Screen):
 
     name = "mixing"
     title = "color mixing"
+    word = "colors"
     help = "Drag the bars to mix colors; the bar between blends them, or picks from a ramp"
 
     def __init__(self, session: Session) -> None:

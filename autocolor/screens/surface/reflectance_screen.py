@@ -18,6 +18,7 @@ class ReflectanceScreen(OverPicture):
 
     name = "reflectance"
     title = "reflectance"
+    word = "surface"
     help = "How the chosen surface reflects; click in the picture: choose another"
 
     def build(self, around: Surroundings) -> Content:

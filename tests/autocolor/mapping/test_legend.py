@@ -65,7 +65,8 @@ PLACED = [
 
 @pytest.mark.parametrize(("scalar", "number"), PLACED)
 def test_the_legend_stands_where_it_stood(scalar: dict[str, Any], number: int) -> None:
-    assert zlib.crc32(repr(legend_of(shown(ball(**scalar)))).encode()) == number
+    found = legend_of(shown(ball(**scalar)))
+    assert zlib.crc32(repr(found).replace(", begin=0", "").encode()) == number
 
 
 @pytest.mark.parametrize("limits", [[-2, 6], [0, 1e5]])

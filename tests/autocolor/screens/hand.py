@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from autocolor import Scene, Studio
-from autocolor.screens.main_menu import rows_of_menu
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.menu import Section, sections_of
 from autocolor.widgets.sheet import Sheet
@@ -98,6 +97,13 @@ class Hand:
         """Bring the menu by moving the pointer to the right edge."""
         self.move(639, 200)
 
+    def turn_to(self, title: str) -> None:
+        """Pick the word of a screen in the strip above the menu; the menu is brought if needed."""
+        self.open_menu()
+        word = next(screen.word for screen in self.viewer.screens.values() if screen.title == title)
+        strip = {each.label: each.area for each in self.viewer.board.layout.strip}
+        self.click(strip[word].left + 4, strip[word].top + 8)
+
     def widget(self, label: str) -> Widget:
         """A widget that can be seen, by its label.
 
@@ -175,6 +181,6 @@ def folded_section_of(viewer: Viewer, label: str) -> str:
     """The label of the folded section of the menu with a row; empty if there is none."""
     board = viewer.board
     folded = [row.label for row in board.layout.rows if isinstance(row, Section) and not row.is_open]
-    rows = rows_of_menu(viewer.session, board.screen, board.content, viewer.screens.values())
+    rows = list(board.content.rows())
     sections = [section for section in sections_of(rows)[1:] if section[0].label in folded]
     return next((s[0].label for s in sections if any(row.label == label for row in s[1:])), "")

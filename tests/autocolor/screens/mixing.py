@@ -15,7 +15,7 @@ from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.painting_hand import PaintingHand
 
 STRIP = Area(BLEND.left, BLEND.top + LANE, BLEND.right, BLEND.bottom - LANE)
-SHADES = {"light source": Area(8, 20, 172, 80), "object": Area(8, 143, 172, 203)}
+SHADES = {"light source": Area(8, 36, 172, 96), "object": Area(8, 159, 172, 219)}
 ZERO = 192
 """The element of a bar at which a component is 0; each of the next is one more."""
 

@@ -50,17 +50,9 @@ class PaintingHand(Hand):
         keys = (each for each in self.viewer.board.widgets() if each.key == label)
         return next(keys, None) or super().widget(label)
 
-    def turn_to(self, title: str) -> None:
-        """Go to a screen by the rows of the menus."""
-        if self.viewer.page != "picture":
-            self.leave()
-        self.open_menu()
-        self.pick(title)
-
     def leave(self) -> None:
         """Go back to the picture, away from its menu, with no message."""
-        self.open_menu()
-        self.pick("< picture")
+        self.turn_to("picture")
         self.move(20, 20)
         self.viewer.tell("")
 

@@ -176,9 +176,8 @@ def test_a_session_in_a_folder_that_is_gone_still_shows_its_screen(tmp_path: Pat
     (tmp_path / "gone").mkdir()
     hand = hand_at(tmp_path / "gone", "variants")
     (tmp_path / "gone").rmdir()
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("file")
+    hand.turn_to("picture")
+    hand.turn_to("file")
     message, is_warning = told(hand)
     assert is_warning
     assert message.startswith("gone: a folder must be readable")
@@ -191,9 +190,8 @@ def test_a_pointer_from_elsewhere_keeps_to_the_folder(hand: Hand, folder: Path) 
     (folder / "file link.obj").symlink_to(folder / "deeper" / "triangle.obj")
     note_file(folder.parent / "outside")
     note_file(folder / "wall" / "scene.toml")
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("file")
+    hand.turn_to("picture")
+    hand.turn_to("file")
     kinds = {name: row.value for name, row in rows_of(hand).items()}
     assert list(kinds) == ["broken.obj", "file link.obj", "rig.toml", "wall", "deeper"]
     assert list(kinds.values()) == ["mesh", "mesh", "rig", "scene", "folder"]
@@ -213,9 +211,8 @@ def test_the_user_of_the_machine_goes_up_and_opens_recent_files(folder: Path) ->
     note_file(folder / "gone")
     hand = hand_at(folder, "variants")
     hand.viewer.session.is_at_hand = True
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("file")
+    hand.turn_to("picture")
+    hand.turn_to("file")
     assert list(rows_of(hand, recent=True)) == ["outside"]
     pick(hand, "..")
     assert {"inside", "outside"} <= set(rows_of(hand))
@@ -381,7 +378,7 @@ def test_an_image_is_exported_as_a_display_shows_it_and_never_over_a_file(hand: 
     before = (folder / "boxes.png").read_bytes()
     # The screen may be left at once.
     hand.pick("export")
-    hand.pick("< picture")
+    hand.turn_to("picture")
     assert (folder / "boxes-2.png").exists()
     assert (folder / "boxes.png").read_bytes() == before
 

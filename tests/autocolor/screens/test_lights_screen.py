@@ -211,7 +211,7 @@ def test_three_points_of_the_object_make_a_half_space_in_one_step(hand: Hand) ->
     seen = [hand.viewer.studio.seen_at(line, element) for element, line in PLACES]
     hand.pick("half spaces")
     assert told(hand) == ("pick the first point of the plane on the object; Esc ends", False)
-    hand.click(5, 5)
+    hand.click(5, WORK.top + 5)
     message = "no point is seen there; pick the first point of the plane on the object; Esc ends"
     assert told(hand) == (message, True)
     hand.click(*PLACES[0])
@@ -313,7 +313,7 @@ def test_points_for_a_light_that_is_gone_are_refused_until_there_is_a_light(hand
     for _ in range(2):
         hand.click(*PLACES[2])
         assert told(hand) == ("to have a half-space, there must be a light; add one", True)
-    hand.click(5, 5)
+    hand.click(5, WORK.top + 5)
     assert told(hand)[0].startswith("no point is seen there; pick the third point")
     session.edit(boxes())
     hand.click(*PLACES[2])

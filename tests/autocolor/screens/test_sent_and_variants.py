@@ -336,11 +336,10 @@ def test_small_pictures_come_in_turn_while_nothing_moves(hand: Hand) -> None:
         assert len(hand.viewer.board.content.items) == number
     assert not hand.viewer.board.content.idle()
     hand.pick("drop")
-    hand.pick("< picture")
+    hand.turn_to("picture")
     assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
     # When the screen is back, those of kept variants still stand, and that of the dropped one is gone.
-    hand.open_menu()
-    hand.pick("variants")
+    hand.turn_to("variants")
     assert len(hand.viewer.board.content.items) == 2
     hand.pick("keep")
     assert len(hand.viewer.board.content.items) == 2
@@ -365,9 +364,8 @@ def test_many_variants_have_pages(hand: Hand) -> None:
     assert hand.widget("page").present == "2 of 2"  # type: ignore[attr-defined]
     # It opens at the page of the last variant.
     hand.pick("page")
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("variants")
+    hand.turn_to("picture")
+    hand.turn_to("variants")
     assert len(names(hand)) == 3
     hand.pick("page")
     assert len(names(hand)) == ON_PAGE

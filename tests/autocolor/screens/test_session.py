@@ -175,8 +175,8 @@ def undo_and_redo(hand: Hand) -> None:
 
 
 def leave_and_come_back(hand: Hand) -> None:
-    pick_row(hand, "mapping")
-    hand.pick("< picture")
+    hand.turn_to("mapping")
+    hand.turn_to("picture")
 
 
 ENDINGS: dict[str, Callable[[Hand], object]] = {
@@ -199,7 +199,7 @@ def test_whatever_is_done_meanwhile_is_done_with_the_present_state(hand: Hand, n
 
 
 def test_handles_and_marks_of_the_present_light_are_not_there_meanwhile(hand: Hand) -> None:
-    pick_row(hand, "lights")
+    hand.turn_to("lights")
     board = hand.viewer.board
     assert board.content.handles
     hand.press("b")
@@ -275,14 +275,14 @@ def test_the_state_before_is_shown_in_the_present_view(hand: Hand) -> None:
 
 def test_a_variant_is_compared_until_comparing_ends_or_it_is_dropped(hand: Hand) -> None:
     variant = hand.scene
-    pick_row(hand, "variants")
+    hand.turn_to("variants")
     hand.pick("keep")
     hand.pick("compare")
     assert hand.message == "shown: variant A; now the same"
     hand.drag((60, 60), (90, 60))
     pick_row(hand, "fill", 0.95)
     now, before = shown(hand), hand.viewer.studio.history.to_undo[-1]
-    pick_row(hand, "variants")
+    hand.turn_to("variants")
     hand.pick("compare")
     assert hand.viewer.page == "picture"
     assert hand.message.startswith("shown: variant A; now: ")
@@ -290,19 +290,19 @@ def test_a_variant_is_compared_until_comparing_ends_or_it_is_dropped(hand: Hand)
     assert shown(hand) == alone(variant.replace(view=view))
     pick_row(hand, "compare")
     assert shown(hand) == now
-    pick_row(hand, "variants")
+    hand.turn_to("variants")
     hand.pick("compare", 0.9)
     assert hand.message == f"compared from now on: {BEFORE}"
-    hand.pick("< picture")
+    hand.turn_to("picture")
     hand.press("b")
     assert shown(hand) == alone(before.replace(view=view))
     release(hand)
     # A variant that was dropped is compared no longer.
-    pick_row(hand, "variants")
+    hand.turn_to("variants")
     hand.pick("compare")
-    pick_row(hand, "variants")
+    hand.turn_to("variants")
     hand.pick("drop")
-    hand.pick("< picture")
+    hand.turn_to("picture")
     hand.press("b")
     assert hand.message.startswith(f"shown: {BEFORE}; now: ")
 
@@ -535,7 +535,7 @@ def test_other_edits_do_not_say_that_nothing_changed(tmp_path: Path) -> None:
 
 def test_the_whole_drag_is_compared_when_it_ends(tmp_path: Path) -> None:
     hand = hand_before(ALONE, tmp_path)
-    pick_row(hand, "lights")
+    hand.turn_to("lights")
     left, top, *_ = hand.widget("intensity").area
     hand.grab(left + 20, top + 8)
     for element in (40, 60):

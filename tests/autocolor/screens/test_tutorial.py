@@ -55,6 +55,11 @@ def menu(label: str, share: float = 0.25) -> Act:
     return act
 
 
+def go(title: str) -> Act:
+    """Turn to a screen by the strip."""
+    return lambda hand: hand.turn_to(title)
+
+
 def pull(label: str, start: float, end: float) -> Act:
     return lambda hand: hand.pull(label, start, end)
 
@@ -113,41 +118,41 @@ def is_split_elsewhere(hand: Hand) -> bool:
 
 TASKS: dict[str, tuple[Sequence[Act], Act]] = {
     "move a light": (
-        [menu("light & view"), drag_handle("key: x", 0, 40, -30), drag_handle("key: x", 1, 0, -40)],
+        [go("light & view"), drag_handle("key: x", 0, 40, -30), drag_handle("key: x", 1, 0, -40)],
         lambda hand: all_differ(coupe().lights["key"].position, key(hand).position),
     ),
     "aim a light": (
-        [menu("light & view"), drag_handle("key: aim", 0, 12, -12), drag_handle("key: aim", 1, 12, -12)],
+        [go("light & view"), drag_handle("key: aim", 0, 12, -12), drag_handle("key: aim", 1, 12, -12)],
         lambda hand: all_differ(coupe().lights["key"].aim, key(hand).aim),
     ),
     "set a flap": (
-        [menu("lights"), pick("flaps z", BOX), pick("z minimum", BOX)],
+        [go("lights"), pick("flaps z", BOX), pick("z minimum", BOX)],
         lambda hand: cuts(key(hand).flaps.z),
     ),
     "switch a cone on and off": (
-        [menu("lights"), pick("cone angle", BOX), pick("cone angle", BOX)],
+        [go("lights"), pick("cone angle", BOX), pick("cone angle", BOX)],
         lambda hand: hand.scene.equals(coupe()) and len(hand.viewer.studio.history.to_undo) == 2,
     ),
     "set intensity and concentration": (
-        [menu("lights"), pull("intensity", 0.5, 0.8), pull("concentration", 0.2, 0.4)],
+        [go("lights"), pull("intensity", 0.5, 0.8), pull("concentration", 0.2, 0.4)],
         lambda hand: key(hand).intensity > 1.2 and key(hand).concentration > 20,
     ),
     "switch a light": ([menu("side", BOX)], lambda hand: not hand.scene.lights["side"].on),
     "choose any paint": (
-        [menu("color mixing"), pick("paints", 0.7)],
+        [go("color mixing"), pick("paints", 0.7)],
         lambda hand: paint(hand).object_color in set(map(tuple, swatches().tolist())),
     ),
     "blend": (
-        [menu("light blending"), lambda hand: hand.move(20, 20), pick("blend level", 0.5)],
+        [go("light blending"), lambda hand: hand.move(20, 20), pick("blend level", 0.5)],
         lambda hand: paint(hand).blend == pytest.approx(0.5, abs=0.01),
     ),
     "mix a ramp": (
-        [menu("color mixing"), pick("ramp", BOX), pick("ramp bar", 0.6), pick("paints", 0.7)],
+        [go("color mixing"), pick("ramp", BOX), pick("ramp bar", 0.6), pick("paints", 0.7)],
         lambda hand: (paint(hand).ramp or ())[3] in set(map(tuple, swatches().tolist())),
     ),
     # A drag along a choice goes through all names.
     "color by a scalar": (
-        [menu("scalar"), pull("scalar", 0.3, 0.7), pull("scale", 0.3, 0.7)],
+        [go("scalar"), pull("scalar", 0.3, 0.7), pull("scale", 0.3, 0.7)],
         lambda hand: hand.scene.scalar and hand.scene.scalar.scale != Scalar(hand.scene.scalar.name).scale,
     ),
     "turn and move the view": (
@@ -156,7 +161,7 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
             hand.scene.view.eye != coupe().view.eye and hand.scene.view.target != coupe().view.target
         ),
     ),
-    "save": ([turn, menu("file"), pick("save")], lambda hand: "*" not in hand.viewer.caption),
+    "save": ([turn, go("file"), pick("save")], lambda hand: "*" not in hand.viewer.caption),
     "undo": ([recolor, menu(" ", 0.1)], lambda hand: hand.scene is coupe()),
     "go back several steps": (
         [recolor, recolor, recolor, menu(" ", 0.5), pick("step 0")],
@@ -214,14 +219,12 @@ def name_of(tutorial: Tutorial) -> str:
 
 def test_the_whole_tutorial_is_done_by_the_unit_alone(hand: Hand, tutorial: Tutorial, tmp_path: Path) -> None:
     assert name_of(tutorial) == "move a light"
-    hand.open_menu()
-    hand.pick("light & view")
+    hand.turn_to("light & view")
     element, line = hand.handle("key: x")
     hand.drag((element, line), (element + 20, line - 10))
     assert name_of(tutorial) == "flaps"
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("lights")
+    hand.turn_to("picture")
+    hand.turn_to("lights")
     hand.pick("flaps y", 0.95)
     assert name_of(tutorial) == "flaps"
     hand.pick("y minimum", 0.95)
@@ -235,9 +238,8 @@ def test_the_whole_tutorial_is_done_by_the_unit_alone(hand: Hand, tutorial: Tuto
     change_paint(hand.viewer.session, blend=0.2)
     hand.viewer.tell("")
     assert name_of(tutorial) == "save"
-    hand.pick("< picture")
-    hand.open_menu()
-    hand.pick("file")
+    hand.turn_to("picture")
+    hand.turn_to("file")
     hand.pick("save")
     assert name_of(tutorial) == ""
     assert list(tmp_path.glob("*.npz"))
@@ -250,8 +252,7 @@ def test_a_lesson_is_skipped_and_undo_does_not_go_back_to_one(hand: Hand, tutori
     hand.pick("skip")
     hand.pick("skip")
     assert name_of(tutorial) == "a cone"
-    hand.open_menu()
-    hand.pick("lights")
+    hand.turn_to("lights")
     hand.pull("cone angle", 0.3, 0.6)
     hand.pick(" ", 0.1)
     assert name_of(tutorial) == "mix a color"
@@ -271,7 +272,7 @@ def test_the_panel_stands_on_every_screen_and_makes_room(hand: Hand, tutorial: T
             panel = next(each.area for each in hand.viewer.board.widgets() if each.label == "tutorial")
             places.append(panel)
             assert hand.viewer.board.is_covered(panel.left + 8, panel.top + 20)
-            hand.pick("up" if panel.top else "down")
+            hand.pick("up" if panel.top > WORK.top else "down")
         assert not places[0].overlaps(places[1])
         hand.drag((100, places[0].bottom - 5), (200, places[0].bottom - 90))
         assert hand.scene is before

@@ -170,6 +170,8 @@ def test_below_the_menu_no_word_of_the_base_is_sent() -> None:
     assert uncovered(screen, [menu, message]) == (0, 0, 503, 463)
     assert uncovered(screen, [message, menu]) == (0, 0, 503, 463)
     assert uncovered(screen, [menu]) == screen
+    strip, below = filled(Area(0, 0, 639, 15), 1), filled(Area(504, 16, 639, 463), 1)
+    assert uncovered(screen, [below, strip, message]) == (0, 16, 503, 463)
     assert uncovered(screen, [menu._replace(is_solid=False), message]) == (0, 0, 639, 463)
 
 

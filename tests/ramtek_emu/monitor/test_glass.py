@@ -41,6 +41,30 @@ def glass(monkeypatch: pytest.MonkeyPatch) -> Iterator[Glass]:
     opened.close()
 
 
+@pytest.mark.parametrize(
+    ("desktop", "fit", "fills", "size"),
+    [
+        ((1366, 768), None, True, (921, 691)),
+        ((1366, 768), False, False, (640, 480)),
+        ((1400, 1100), None, False, (1280, 960)),
+        ((1400, 1100), True, True, (1320, 990)),
+    ],
+)
+def test_without_room_for_twice_its_size_the_field_may_fill_the_window(
+    monkeypatch: pytest.MonkeyPatch,
+    desktop: tuple[int, int],
+    fit: bool | None,
+    fills: bool,
+    size: tuple[int, int],
+) -> None:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setattr(pygame.display, "get_desktop_sizes", lambda: [desktop])
+    glass = Glass((640, 480), fit)
+    glass.open(full_screen=False)
+    assert (glass.fit, pygame.display.get_window_size()) == (fills, size)
+    glass.close()
+
+
 @pytest.mark.parametrize("title", ["\udcffcar", "car\0", "a\nb", "x" * 9000, "ünï→💥"])
 def test_a_title_of_any_text_is_shown(glass: Glass, title: str) -> None:
     glass.set_title(title)

@@ -75,7 +75,7 @@ def test_a_page_is_turned_to_and_back() -> None:
     overlay.draw(field, colors, "title")
     assert np.array_equal(field, help_page(480, 640, "title", KEYS))
     overlay.turn_to("help")
-    assert overlay.stamp == ("", "")
+    assert overlay.stamp == ("", "", False)
 
 
 def test_a_message_passes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,4 +84,4 @@ def test_a_message_passes(monkeypatch: pytest.MonkeyPatch) -> None:
     overlay.message = "saved"
     for now, message in ((100.0, "saved"), (104.9, "saved"), (105.0, "")):
         monkeypatch.setattr("time.monotonic", lambda now=now: now)
-        assert overlay.stamp == ("", message)
+        assert overlay.stamp == ("", message, False)

@@ -171,7 +171,7 @@ def test_a_view_without_a_target_looks_where_the_end_of_its_arrow_was_put() -> N
     view, views = hand.scene.view, screen_of(hand).views
     assert (view.target, view.eye) == (None, (-2.0, -3.0, 2.0))
     wanted = np.array(views.placed(TOP, end, element, line - 30)) - np.array(view.eye)
-    assert view.axes[2] == pytest.approx(wanted / np.linalg.norm(wanted), abs=1e-3)
+    assert view.axes[2] == pytest.approx(wanted / np.linalg.norm(wanted), abs=5e-3)
 
 
 @pytest.mark.parametrize(("end", "low", "high"), [("minimum", 0.9, 0.9), ("maximum", 0.1, 0.1)])
@@ -300,7 +300,7 @@ def test_a_page_that_changed_step_by_step_is_the_page_drawn_at_once_and_leaving_
     hand.move(100, 216)
     hand.viewer.tell("")
     assert hand.is_drawn_whole()
-    hand.pick("< picture")
+    hand.turn_to("picture")
     hand.move(100, 100)
     hand.viewer.tell("")
     assert hand.shows(hand.scene)
@@ -492,11 +492,11 @@ LIGHTS = (
 
 # If the views change on purpose, look at them, and copy the new numbers from the failure.
 DRAWN = {
-    "all lights": 3008843501,
-    "held": 2795551590,
-    "the eye and the mesh": 55816875,
-    "nearer": 1193104313,
-    "the coupe": 2705044763,
+    "all lights": 2355372459,
+    "held": 2776583612,
+    "the eye and the mesh": 970031441,
+    "nearer": 3433192782,
+    "the coupe": 3351660395,
 }
 
 

@@ -115,7 +115,7 @@ def test_fitted_points_are_within_all_areas_with_space_left_on_all_sides(
 
 
 def test_the_longest_extent_fills_its_view() -> None:
-    assert fitted_views(cube().coordinates).scale == pytest.approx(FILLED * 223)
+    assert fitted_views(cube().coordinates).scale == pytest.approx(FILLED * 219)
     assert fitted_views(cube().coordinates * (4, 1, 1)).scale == pytest.approx(FILLED * 247 / 4)
     assert fitted_views(cube().coordinates * (4, 1, 1)).center == (2, 0.5, 0.5)
 
@@ -123,7 +123,7 @@ def test_the_longest_extent_fills_its_view() -> None:
 def test_a_single_point_and_none_have_space_around_them() -> None:
     views = fitted_views(np.array([[5.0, 6.0, 7.0]]))
     assert views.center == (5, 6, 7)
-    assert views.scale == pytest.approx(FILLED * 223)
+    assert views.scale == pytest.approx(FILLED * 219)
     assert fitted_views(np.empty((0, 3))) == OrthographicViews((0.0, 0.0, 0.0), views.scale)
 
 

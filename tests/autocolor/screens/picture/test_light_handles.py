@@ -34,8 +34,7 @@ def hand(tmp_path: Path) -> Hand:
 
 @pytest.fixture
 def at_lights(hand: Hand) -> Hand:
-    hand.open_menu()
-    hand.pick("lights")
+    hand.turn_to("lights")
     return hand
 
 

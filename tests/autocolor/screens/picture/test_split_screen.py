@@ -93,7 +93,7 @@ def test_leaving_restores_every_word_and_every_entry(edit: str, tmp_path: Path) 
     assert hand.viewer.page == "split"
     assert seen_on(hand) != before
     hand.open_menu()
-    hand.pick("< picture")
+    hand.turn_to("picture")
     hand.move(300, 300)
     hand.viewer.tell("")
     assert seen_on(hand) == before
@@ -140,8 +140,7 @@ def test_a_variant_is_split_as_it_is_compared(tmp_path: Path) -> None:
     hand.viewer.studio.keep_variant("A")
     for intensity in (0.5, 0.25):
         hand.viewer.session.edit(hand.viewer.session.scene.with_light("key", intensity=intensity))
-    hand.open_menu()
-    hand.pick("variants")
+    hand.turn_to("variants")
     hand.pick("compare")
     split(hand)
     assert hand.message.startswith("now: key: intensity 1 -> 0.25; ")

@@ -1,0 +1,85 @@
+"""The state of the menus: whether the menu was asked for, its page, its open row, and its folded sections."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from autocolor.widgets.menu import MENU, NameList, Section, folded, lines_of, list_of, page_of_menu
+from autocolor.widgets.widget import Choice, Gap, Widget
+
+
+class MenuState:
+    """What the user did to the menus. `take` is called with a choice and the name picked from its list."""
+
+    def __init__(self, take: Callable[[Choice, str], object]) -> None:
+        self.is_pinned = False
+        """Whether the menu was asked for; else it goes when the pointer leaves it."""
+        self.is_open = False
+        """Whether the pointer brought the menu."""
+        self.has_focus = False
+        """Whether keys go to the menu."""
+        self.opened = ""
+        """The key of the row whose wide bar or list is open."""
+        self._take = take
+        self._page = 0
+        self._list_page: int | None = None
+        """The page of the list; None for the page of the present name."""
+        self._folds: dict[str, dict[str, bool]] = {}
+        """By screen, whether sections of its menu are to be open or folded, the last used at the end."""
+        self._sections: dict[str, bool] = {}
+        """Whether each section of the present menu is open."""
+
+    def stamp(self, screen: str) -> object:
+        """A value that changes whenever the rows of a screen's menu or their list may."""
+        return self._page, self.opened, self._list_page, tuple(self._folds.get(screen, {}).items())
+
+    def rows(self, screen: str, rows: Sequence[Widget], last: Sequence[Widget]) -> list[Widget]:
+        """The rows of this page of a screen's menu, laid out; each page ends with the `last` rows."""
+        folds = self._folds.get(screen, {})
+        shown = folded(rows, folds, partial(self.fold, screen), MENU.height - lines_of(last))
+        self._sections = {row.label: row.is_open for row in shown if isinstance(row, Section)}
+        if folds:
+            # A section that was folded to make room stays folded.
+            folds.update(self._sections)
+        return page_of_menu(shown, last, self._page, partial(setattr, self, "_page"))
+
+    def fold(self, screen: str, section: str, is_open: bool) -> None:
+        """Open or fold a section of this menu, and note that it was used last; the others stay."""
+        folds = self._folds.setdefault(screen, {})
+        folds.update(self._sections)
+        folds.pop(section, None)
+        folds[section] = is_open
+
+    def use(self, screen: str, widget: Widget, rows: Sequence[Widget]) -> None:
+        """Note that the section of a widget was used last, so that the section stays open if it grows."""
+        section = ""
+        for row in rows:
+            if isinstance(row, Section):
+                section = row.label
+            elif isinstance(row, Gap):
+                # The last rows of the menu are in no section.
+                section = ""
+            elif row.key == widget.key and section:
+                self.fold(screen, section, True)
+                return
+
+    def open_or_close(self, row: Widget) -> None:
+        """Open the wide bar or the list of a row, or close it."""
+        self.opened = "" if self.opened == row.key else row.key
+        self._list_page = None
+
+    def list_of(self, choice: Choice) -> NameList:
+        """The open list of a choice."""
+        return list_of(
+            choice, self._list_page, partial(self._take, choice), partial(setattr, self, "_list_page")
+        )
+
+    def close(self) -> None:
+        """Take the menu away where it comes on demand."""
+        self.is_pinned = self.is_open = self.has_focus = False
+
+    def begin(self) -> None:
+        """Show the first page of another screen's menu, with nothing open."""
+        self.opened, self._page = "", 0
+        self.close()
