@@ -9,6 +9,8 @@ from autocolor.screens.board import Board
 from autocolor.screens.file_actions import read_again, save, save_image
 from autocolor.screens.input import Binding, Chord
 from autocolor.screens.picture.picture_edits import (
+    CLOSER,
+    TURN,
     as_opened,
     move,
     next_surface,
@@ -146,12 +148,8 @@ def paste(viewer: Driven) -> None:
     viewer.board.paste(text)
 
 
-TURN: Final = 5.0
 FINE_TURN: Final = 1.0
-"""Degrees for each press of a key that turns, and with Shift."""
-
-CLOSER: Final = 0.9
-"""The ratio of distances for each press of a key that moves closer."""
+"""Degrees for each press of a key that turns, with Shift."""
 
 BLEND: Final = 0.05
 """The step of the blend for each press of its keys."""
@@ -213,7 +211,7 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding(
         (Chord(","), Chord(".")),
         "rotate the picture's horizontal axis",
-        lambda viewer, number: tilt(viewer.session, (-TURN, TURN)[number]),
+        lambda viewer, number: tilt(viewer.session, (-1, 1)[number]),
         label="comma, period",
         held=True,
     ),

@@ -10,7 +10,7 @@ from PIL import Image
 
 import autocolor
 from autocolor.files.state import note_color, recent_colors
-from autocolor.screens.light_and_view.handles import MovablePoint
+from autocolor.screens.light_and_view.marks import MovablePoint
 from autocolor.screens.light_and_view.orthographic_views import SIDES
 from autocolor.testing import Recoloring, check_recoloring_moves_no_word
 from ramtek_emu import Ramtek9300

@@ -15,11 +15,11 @@ from autocolor.errors import UsageError
 from autocolor.scene.scene import FRONTS
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
-from autocolor.screens.light_and_view.handles import FLAP, MarkedPoint, handles_of, points_in
-from autocolor.screens.light_and_view.marks import lines_across, side_items
+from autocolor.screens.light_and_view.marks import FLAP, MarkedPoint, marks_in
 from autocolor.screens.light_and_view.object_lines import ObjectLines, sampled
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
+    LINES_BETWEEN,
     PICTURE_AREA,
     SIDES,
     OrthographicViews,
@@ -32,15 +32,12 @@ from autocolor.screens.picture.over_picture import camera_rows, light_switches
 from autocolor.screens.picture.picture_edits import as_opened, move, rescale, side_name, tilt, turn
 from autocolor.screens.screen import Content, Handle, Screen, Surroundings
 from autocolor.screens.session import Session
-from autocolor.widgets.items import CHARACTER_LINES, GRAY, SLATE, Area, Item, image, outline, text
+from autocolor.widgets.items import CHARACTER_LINES, GRAY, SLATE, Item, filled, image, outline, text
 from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import Button, Choice, Pair, Steps, Widget
 
 CLOSER: Final = 1.25
 """Assumed: the ratio of scales for each step of RESCALE."""
-
-ANGLE: Final = 5.0
-"""Degrees for each step of ANGLE."""
 
 UNKNOWN: Final = "unknown"
 """The choice of no front."""
@@ -59,18 +56,6 @@ MESH: Final = "mesh"
 
 FRAME: Final = 8
 """Assumed: the elements and lines between the edge of the quarter and the picture."""
-
-
-def area_of_picture(area: Area, aspect: float) -> Area:
-    """The largest area of the shape of a picture, its width over its height, in the middle of an area.
-
-    >>> area_of_picture(Area(256, 0, 503, 223), 4 / 3)
-    Area(left=256, top=19, right=503, bottom=204)
-    """
-    width = min(area.width, round(area.height * aspect))
-    height = min(area.height, round(area.width / aspect))
-    left, top = area.left + (area.width - width) // 2, area.top + (area.height - height) // 2
-    return Area(left, top, left + width - 1, top + height - 1)
 
 
 class LightAndViewScreen(Screen):
@@ -116,7 +101,7 @@ class LightAndViewScreen(Screen):
         items, handles = self._marked.of(self._mark, scene, views, self.chosen, self._held)
         return Content(
             base=self._lines.page(scene, views),
-            items=[*self._quarter(), *items],
+            items=[*(filled(area, SLATE) for area in LINES_BETWEEN), *self._quarter(), *items],
             handles=handles,
             rows=self._rows,
             hint=self._hint,
@@ -133,27 +118,32 @@ class LightAndViewScreen(Screen):
         handles: list[Handle] = []
         for side in SIDES:
             if held is not None and held.movable.what != FLAP:
-                items += lines_across(views, side, held.point)
-            others, ours = points_in(scene, views, side, self.chosen)
-            marks, signs = side_items(scene, views, side, others, ours)
+                # Thin lines, which continue in the views beside and above.
+                across = views.lines_through(side, held.point)
+                items += [filled(line, SLATE) for line in across if side.area.covers(line)]
+            marks, found = marks_in(scene, views, side, self.chosen, self._hold)
             items += marks
-            handles += [
-                handle._replace(place=self._place, let_go=partial(setattr, self, "_held", None))
-                for handle in handles_of((*others, *ours), scene, views, signs, self._hold)
-            ]
+            let_go = partial(setattr, self, "_held", None)
+            handles += [handle._replace(place=self._place, let_go=let_go) for handle in found]
         return items, handles
 
     def _quarter(self) -> list[Item]:
         """The items of DISPLAY VIEW: the view as a picture, or as the lines that the eye sees."""
-        studio = self.session.studio
-        words = studio.words
-        lines, elements = words.shape
-        area = area_of_picture(PICTURE_AREA.inset(FRAME), elements / lines)
-        if self._shown == MESH:
-            words = self._lines.of_points(self.session.scene, studio.sight.points, area)
+        studio, scene = self.session.studio, self.session.scene
+        lines, elements = studio.words.shape
+        area = PICTURE_AREA.inset(FRAME)
+        height = min(area.height, area.width * lines // elements)
+        top = area.top + (area.height - height) // 2
+        area = area._replace(top=top, bottom=top + height - 1)
+        is_mesh, points = self._shown == MESH, studio.sight.points
+
+        def small() -> Item:
+            words = self._lines.of_points(scene, points, area) if is_mesh else studio.words
+            return image(sampled(words, area.height, area.width), *area[:2])
+
+        sources = (points, scene.mesh, scene.parts) if is_mesh else (studio.words,)
         title = text("view", PICTURE_AREA.left + 8, PICTURE_AREA.bottom - CHARACTER_LINES - 3, GRAY)
-        small = self._small.of(lambda: image(sampled(words, area.height, area.width), *area[:2]), words)
-        return [title, outline(area.inset(-1), SLATE), small]
+        return [title, outline(area.inset(-1), SLATE), self._small.of(small, *sources)]
 
     def _hint(self, element: int, line: int) -> str:
         if PICTURE_AREA.has(element, line):
@@ -249,12 +239,7 @@ class LightAndViewScreen(Screen):
                 present=self._shown,
                 choose=partial(setattr, self, "_shown"),
             ),
-            Steps(
-                "angle",
-                "ANGLE: turn the picture.",
-                step=lambda steps: tilt(session, steps * ANGLE),
-                signs=("<", ">"),
-            ),
+            Steps("angle", "ANGLE: turn the picture.", step=partial(tilt, session), signs=("<", ">")),
             Button(
                 "frame", "Move the eye so that the object fills the picture.", run=partial(rescale, session)
             ),

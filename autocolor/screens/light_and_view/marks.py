@@ -1,4 +1,4 @@
-"""The items of one of the three views: the eye, the lights with their numbers, and the lines through a point.
+"""The eye and the lights in the three views: their movable points, signs, numerals and handles.
 
 The number of instructions takes the time: so lines of one color are drawn together. The chosen eye or light
 is yellow and above all others; the numbers are above all lines.
@@ -7,10 +7,9 @@ is yellow and above all others; the numbers are above all lines.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from functools import cache, lru_cache
-from itertools import product
-from typing import Final
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, lru_cache, partial
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -18,16 +17,7 @@ from autocolor.arrays import Floats, Numbers
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
-from autocolor.scene.view import View
-from autocolor.screens.light_and_view.handles import (
-    AIM,
-    EYE,
-    FLAP,
-    LIGHT,
-    MarkedPoint,
-    MovablePoint,
-    line_of_flap,
-)
+from autocolor.scene.view import ASPECT, View
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     OrthographicViews,
@@ -35,6 +25,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     ViewSide,
 )
 from autocolor.screens.picture.picture_edits import side_name, target_of
+from autocolor.screens.screen import Handle
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
@@ -49,13 +40,151 @@ from autocolor.widgets.items import (
     area_of,
     between,
     clipped,
-    filled,
     joined,
     rounded,
     text,
     together,
 )
+from autocolor.widgets.widget import NOWHERE
 from ramtek_emu import instructions
+
+# Points that can be moved.
+
+EYE: Final = "eye"
+TARGET: Final = "target"
+LIGHT: Final = "light"
+AIM: Final = "aim"
+DIRECTION: Final = "direction"
+FLAP: Final = "flap"
+"""The kinds of movable points."""
+
+DIRECTION_LENGTH: Final = 40.0
+"""Assumed: the length of the arrow of a light with a direction and no aim, in elements."""
+
+BETWEEN: Final = 14
+"""Assumed: elements or lines between neighboring handles along the line of a flap."""
+
+
+class MovablePoint(NamedTuple):
+    """A point that can be moved in a view: the eye, its target, or a point of a light.
+
+    A flap has an axis and an end.
+    """
+
+    what: str
+    side: ViewSide
+    light: str = ""
+    axis: str = ""
+    end: str = ""
+
+    @property
+    def label(self) -> str:
+        """The name of the point in the message line."""
+        what = f"flap {self.axis}, {self.end}" if self.what == FLAP else self.what
+        return self.light if self.what == LIGHT else f"{self.light}: {what}" if self.light else what
+
+    def put(self, scene: Scene, point: Vector) -> Scene:
+        """The scene with the movable point at `point`. An end of a flap does not pass the other end."""
+        if self.what == EYE:
+            return scene.with_view(eye=point)
+        if self.what == TARGET and scene.view.target is None:
+            return scene.with_view(direction=_step(scene.view.eye, point))
+        if self.what == TARGET:
+            return scene.with_view(target=point)
+        if self.what == LIGHT:
+            return scene.with_light_in_world(self.light, position=point)
+        if self.what == AIM:
+            return scene.with_light_in_world(self.light, aim=point)
+        if self.what == DIRECTION:
+            start = scene.lights_in_world[self.light].position
+            return scene.with_light_in_world(self.light, direction=_step(start, point))
+        value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
+        value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
+        flaps: Any = {self.axis: {self.end: value}}
+        return scene.with_light(self.light, flaps=flaps)
+
+    def message(self, scene: Scene, point: Vector, views: OrthographicViews) -> str:
+        """The text of the message line for the movable point at `point` of a scene."""
+        if self.what != FLAP:
+            places = zip(AXES, point, strict=True)
+            return f"{self.label}: " + "  ".join(f"{axis} {views.rounded(place):g}" for axis, place in places)
+        flap = getattr(scene.lights[self.light].flaps, self.axis)
+        return f"{self.label} {views.rounded(getattr(flap, self.end)):g}"
+
+
+def _step(start: Vector, end: Vector) -> Vector:
+    """The direction from a point to another."""
+    return end[0] - start[0], end[1] - start[1], end[2] - start[2]
+
+
+class MarkedPoint(NamedTuple):
+    """A movable point in a view: its coordinates, its mark, and the end of the arrow that begins there.
+
+    A point of a light has the light, in world coordinates, and its number. All coordinates of an end of a
+    flap are its value, and its `line` runs across the view (Paper: Figure 9).
+    """
+
+    movable: MovablePoint
+    point: Vector
+    mark: PointMark
+    end: Vector | None = None
+    light: Light | None = None
+    number: int = 0
+    line: Area = NOWHERE
+
+    @property
+    def pixel(self) -> tuple[int, int]:
+        """The element and the line of the mark."""
+        return round(self.mark.place[0]), round(self.mark.place[1])
+
+
+def points_in(
+    scene: Scene, views: OrthographicViews, side: ViewSide, chosen: str
+) -> tuple[tuple[MarkedPoint, ...], tuple[MarkedPoint, ...]]:
+    """The movable points in a view; those of the chosen light or eye are apart, in the second tuple.
+
+    `chosen` is the name of a light, or empty for the eye. A chosen light has its flaps.
+    """
+    eye = MovablePoint(EYE, side), scene.view.eye, MovablePoint(TARGET, side), target_of(scene), None
+    arrows: list[tuple[MovablePoint, Vector, MovablePoint, Vector | None, Light | None]] = [eye]
+    for light in scene.lights_in_world:
+        start = MovablePoint(LIGHT, side, light.name)
+        end = start._replace(what=DIRECTION if light.aim is None else AIM)
+        arrows.append((start, light.position, end, arrow_end(views, light), light))
+    points: tuple[list[MarkedPoint], list[MarkedPoint]] = [], []
+    for number, (start, point, end, end_point, shining) in enumerate(arrows):
+        group = points[start.light == chosen]
+        if shining is not None and start.light == chosen:
+            group += _flaps_in(shining, views, side)
+        if end_point is not None:
+            at = views.position(side, end_point)
+            group.append(MarkedPoint(end, end_point, PointMark(at, at), None, shining, number))
+        mark = views.mark(side, point, end_point)
+        group.append(MarkedPoint(start, point, mark, end_point, shining, number))
+    return tuple(points[False]), tuple(points[True])
+
+
+def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
+    """The end of a light's arrow: its aim, or a point in its direction; None without either."""
+    if light.aim is not None or light.axis is None:
+        return light.aim
+    x, y, z = light.position
+    length = DIRECTION_LENGTH / views.scale
+    return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
+
+
+def _flaps_in(light: Light, views: OrthographicViews, side: ViewSide) -> Iterator[MarkedPoint]:
+    """The ends of a light's flaps that a view shows: of its two coordinates, finite and within its area."""
+    for number, axis in enumerate((side.right, side.up)):
+        flap = getattr(light.flaps, AXES[axis])
+        for end in ("minimum", "maximum") if flap is not None else ():
+            value = float(getattr(flap, end))
+            point = value, value, value
+            if math.isfinite(value) and side.area.covers(line := views.lines_through(side, point)[number]):
+                at = views.position(side, point)
+                movable = MovablePoint(FLAP, side, light.name, AXES[axis], end)
+                yield MarkedPoint(movable, point, PointMark(at, at), light=light, line=line)
+
 
 # Arrows on the screen: a shaft, and a head whose size does not depend on the shaft. Shapes are positions
 # along an arrow and across it, joined by strokes.
@@ -99,14 +228,11 @@ LIDS: Final = np.array([(-7, 0), (-3, -3), (3, -3), (7, 0), (3, 3), (-3, 3), (-7
 PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float64)
 """The eye: positions relative to the eye's position, joined by strokes."""
 
-BESIDE: Final = 12.0
+BESIDE: Final = 16.0
 """Assumed: elements or lines from the arrow at the edge back to the eye that it belongs to."""
 
 CROSS: Final = np.array([(-4, 0, 4, 0), (0, -4, 0, 4)], np.float64)
 """A light: strokes relative to its position."""
-
-PICTURE_ASPECT: Final = 640 / 480
-"""The width of a picture over its height. Paper: Figure 11, 640 x 480."""
 
 
 def sign_of(what: str, mark: PointMark) -> Floats:
@@ -120,16 +246,14 @@ def sign_of(what: str, mark: PointMark) -> Floats:
 
 
 def picture_corners(view: View, target: Vector) -> Floats:
-    """The points at the corners of the picture, (4, 3), at the depth of the target.
-
-    They run around the picture from the upper left corner.
-    """
+    """The points at the corners of the picture, (4, 3), at the depth of the target, from the upper left."""
     right, down, forward = view.axes
+    right, down = ASPECT * view.half_height(ASPECT) * right, view.half_height(ASPECT) * down
     depth = float(forward @ (np.array(target) - np.array(view.eye)))
-    half = view.half_height(PICTURE_ASPECT)
-    across = half * PICTURE_ASPECT
-    rays = [forward + across * x * right + half * y * down for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    return np.array(view.eye) + depth * np.array(rays)
+    rays = np.array(
+        [forward + across for across in (-right - down, right - down, right + down, down - right)]
+    )
+    return np.array(view.eye) + depth * rays
 
 
 # The outline of a light's cone as it is seen in one of the three views.
@@ -181,20 +305,17 @@ RINGS: Final = 2
 RING: Final = 7
 """Assumed: the rings of places around a cross, and the elements or lines between them."""
 
-PLACES: Final = ((1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1))
+PLACES: Final = np.array([(1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1)])
 """The places around a cross, to the right and down, in order of preference."""
 
 
 @cache
 def places_around(digits: int) -> Numbers:
     """The areas for a numeral of some digits around a cross at (0, 0), (places, 4), the preferred first."""
-    half, down_half = CHARACTER * digits // 2, CHARACTER_LINES // 2
-    corners = []
-    for ring, (right, down) in product(range(RINGS), PLACES):
-        gap = REACH + (AWAY if right and down else 2 * AWAY) + ring * RING
-        corners.append((right * (gap + half) - half, down * (gap + down_half) - down_half))
-    size = CHARACTER * digits - 1, CHARACTER_LINES - 1
-    return np.concatenate([corners, np.add(corners, size)], axis=1)
+    size = np.array([CHARACTER * digits, CHARACTER_LINES])
+    gaps = REACH + np.where(PLACES.all(axis=1), AWAY, 2 * AWAY)[:, np.newaxis]
+    rings = [PLACES * (gaps + RING * ring + size // 2) - size // 2 for ring in range(RINGS)]
+    return np.concatenate([np.concatenate(rings), np.concatenate(rings) + size - 1], axis=1)
 
 
 @lru_cache(maxsize=64)
@@ -225,38 +346,52 @@ def cross_area(element: int, line: int) -> Area:
     return Area(element, line, element, line).inset(-REACH)
 
 
-# The items of a view.
+# The items and the handles of a view.
 
 
-def side_items(
+def marks_in(
     scene: Scene,
     views: OrthographicViews,
     side: ViewSide,
-    others: tuple[MarkedPoint, ...],
-    ours: tuple[MarkedPoint, ...],
-) -> tuple[list[Item], dict[MovablePoint, Area]]:
-    """The items of a view from the lowest to the highest, and the areas of its numerals.
+    chosen: str,
+    hold: Callable[[MarkedPoint], object],
+) -> tuple[list[Item], list[Handle]]:
+    """The items of a view from the lowest to the highest, and its handles, which call `hold`.
 
-    `ours` are the movable points of the chosen light or eye. Their numerals make way for the others, which
-    stay in place.
+    `chosen` is the name of a light, or empty for the eye. Its numerals make way for the others, which stay in
+    place. Of handles at one place, the last is grabbed.
     """
     # As on an engineering drawing, the name of a view is below it.
     name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
     title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, GRAY)
+    others, ours = points_in(scene, views, side, chosen)
     edges = edge_items(views, side, scene.view, target_of(scene))
     items = [title, *edges, *point_items(views, others, False), *point_items(views, ours, True)]
     eyes = [sign_of(EYE, each.mark) for each in (*others, *ours) if each.movable.what == EYE]
     taken = [title.area, *(area_of(eye.reshape(-1, 2), limit=side.area) for eye in eyes)]
-    signs = {}
+    handles = []
     for points in (others, ours):
         shown = [each for each in points if each.movable.what in (LIGHT, AIM) and side.area.has(*each.pixel)]
         areas = numerals(tuple((each.number, *each.pixel) for each in shown), side.area, tuple(taken))
         for each, area in zip(shown, areas, strict=True):
             ink, *_ = inks_of(each, points is ours)
             items.append(text(str(each.number), area.left, area.top, ink))
-            signs[each.movable] = area
             taken += [cross_area(*each.pixel), area]
-    return items, signs
+        signs = dict(zip(shown, areas, strict=True))
+        for each in points:
+            label, sign = each.movable.message(scene, each.point, views), signs.get(each, NOWHERE)
+            for place in places_of_handles(each):
+                handles.append(Handle(each.movable, *place, label, sign, hold=partial(hold, each)))
+    return items, handles
+
+
+def places_of_handles(point: MarkedPoint) -> list[tuple[int, int]]:
+    """The places where a point can be grabbed: at its mark in the view, or all along the line of a flap."""
+    if point.movable.what != FLAP:
+        return [point.pixel] if point.movable.side.area.has(*point.pixel) else []
+    left, top, right, bottom = point.line
+    along = range(BETWEEN // 2, max(right - left, bottom - top), BETWEEN)
+    return [(left + step, top) if top == bottom else (left, top + step) for step in along]
 
 
 def inks_of(point: MarkedPoint, is_chosen: bool) -> tuple[int, int, int]:
@@ -279,7 +414,7 @@ def point_items(
         sign, shaft, cone = inks_of(each, are_chosen)
         if what == FLAP:
             is_on = light is not None and getattr(light.flaps, each.movable.axis).on
-            layers[YELLOW if is_on else GRAY].append(np.array([line_of_flap(each)], np.float64))
+            layers[YELLOW if is_on else GRAY].append(np.array([each.line], np.float64))
         elif what in (EYE, LIGHT):
             layers[sign].append(sign_of(what, each.mark))
             if each.end is not None:
@@ -304,11 +439,3 @@ def drawn_item(parts: Sequence[Floats], word: int, side: ViewSide) -> list[Item]
         return []
     stream = instructions.write_segments(rounded(strokes), word).tobytes()
     return [Item(area_of(strokes.reshape(-1, 2)), stream)]
-
-
-def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> list[Item]:
-    """Thin lines through a point, which continue in the views beside and above."""
-    area = side.area
-    element, line = (round(each) for each in views.position(side, point))
-    upright, level = area._replace(left=element, right=element), area._replace(top=line, bottom=line)
-    return [filled(each, SLATE) for each in (upright, level) if area.covers(each)]

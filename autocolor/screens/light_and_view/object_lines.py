@@ -26,7 +26,6 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
 from autocolor.screens.light_and_view.orthographic_views import (
-    LINES_BETWEEN,
     SIDES,
     OrthographicViews,
     ViewSide,
@@ -105,11 +104,12 @@ def depth_picture_of_points(
 
     `numbers` are as in `depth_picture`.
     """
-    depths = np.full((points.lines, points.elements), np.inf)
-    parts = np.full(depths.shape, NO_PART)
-    depths.put(points.pixels, points.depths)
-    parts.put(points.pixels, numbers.take(points.parts.numbers - 1))
-    return DepthPicture(points.view, sampled(depths, lines, elements), sampled(parts, lines, elements))
+    depths = np.full(points.lines * points.elements, np.inf)
+    parts = np.full(len(depths), NO_PART)
+    depths[points.pixels], parts[points.pixels] = points.depths, numbers.take(points.parts.numbers - 1)
+    shape = points.lines, points.elements
+    small = (sampled(each.reshape(shape), lines, elements) for each in (depths, parts))
+    return DepthPicture(points.view, *small)
 
 
 def sampled(table: AnyArray, lines: int, elements: int) -> AnyArray:
@@ -290,7 +290,6 @@ class ObjectLines:
         self._object: Cached[tuple[Indices, Indices]] = Cached()
         self._found: dict[ViewSide, tuple[OrthographicViews, Words]] = {}
         self._page: Cached[Words] = Cached()
-        self._seen: Cached[Words] = Cached()
 
     def page(self, scene: Scene, views: OrthographicViews) -> Words:
         """The words of the whole screen, read-only, with the lines that are found so far."""
@@ -298,10 +297,9 @@ class ObjectLines:
 
         def page() -> Words:
             words = np.full((HEIGHT, WIDTH), NIGHT, np.uint16)
-            for area in LINES_BETWEEN:
-                _part(words, area)[:] = SLATE
             for side, (before, lines) in self._found.items():
-                _part(words, side.area)[:] = moved(lines, side, before, views)
+                left, top, right, bottom = side.area
+                words[top : bottom + 1, left : right + 1] = moved(lines, side, before, views)
             return read_only(words)
 
         return self._page.of(page, views, *self._found.values())
@@ -323,13 +321,9 @@ class ObjectLines:
         The lines of a coarser picture are as coarse as the picture.
         """
         numbers, creases = self._object_of(scene)
-
-        def words() -> Words:
-            lines, elements = min(points.lines, area.height), min(points.elements, area.width)
-            picture = depth_picture_of_points(points, lines, elements, numbers)
-            return sampled(line_words(picture, scene.mesh, creases), area.height, area.width)
-
-        return self._seen.of(words, creases, points)
+        lines, elements = min(points.lines, area.height), min(points.elements, area.width)
+        picture = depth_picture_of_points(points, lines, elements, numbers)
+        return sampled(line_words(picture, scene.mesh, creases), area.height, area.width)
 
     def _object_of(self, scene: Scene) -> tuple[Indices, Indices]:
         """The numbers of the parts, and the creases. If all parts are stage, they are the object."""
@@ -343,8 +337,3 @@ class ObjectLines:
             return numbers, crease_edges(mesh, numbers)
 
         return self._object.of(compute, mesh, scene.parts)
-
-
-def _part(words: Words, area: Area) -> Words:
-    """The words in an area."""
-    return words[area.top : area.bottom + 1, area.left : area.right + 1]

@@ -8,7 +8,6 @@ point has the same column or line in two of them.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
@@ -97,8 +96,7 @@ class PointMark(NamedTuple):
 Coordinate = TypeVar("Coordinate", float, Floats)
 
 
-@dataclass(frozen=True)
-class OrthographicViews:
+class OrthographicViews(NamedTuple):
     """The coordinates in the middle of every area, and the scale of all views, in elements for each unit."""
 
     center: Vector
@@ -118,6 +116,11 @@ class OrthographicViews:
         """The element and line of each point of (n, 3), (n, 2)."""
         x, y, z = points.T
         return np.stack(self.position(side, (x, y, z)), axis=1)
+
+    def lines_through(self, side: ViewSide, point: Vector) -> tuple[Area, Area]:
+        """The upright and the level line across a view through a point, which may be outside."""
+        element, line = (round(place) for place in self.position(side, point))
+        return side.area._replace(left=element, right=element), side.area._replace(top=line, bottom=line)
 
     def mark(self, side: ViewSide, point: Vector, end: Vector | None) -> PointMark:
         """The mark of a point: at its position, or at the edge of the area for a point outside.
@@ -158,9 +161,8 @@ class OrthographicViews:
         return moved[0], moved[1], moved[2]
 
     def rounded(self, coordinate: float) -> float:
-        """The coordinate, bounded and rounded to decimals that tell tenths of a pixel; 0 has no sign."""
-        rounded = round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
-        return max(-LARGEST_COORDINATE, min(LARGEST_COORDINATE, rounded))
+        """The coordinate, rounded to decimals that tell tenths of a pixel; 0 has no sign."""
+        return round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
 
     def zoomed(self, ratio: float) -> OrthographicViews:
         """The views with a scale that is `ratio` times as large, nearer above 1, around the same center.

@@ -160,6 +160,12 @@ def _vector(values: Floats | Vector) -> Vector:
 
 # The edits of the view of a session.
 
+TURN: Final = 5.0
+"""Degrees for each step of a key or of a row of a menu."""
+
+CLOSER: Final = 0.9
+"""The ratio of distances for each step closer."""
+
 
 def look(session: Session, view: View) -> None:
     """Change the view."""
@@ -190,9 +196,9 @@ def _look_above_stage(session: Session, view: View, is_lowered: bool) -> None:
         session.tell("the eye stays above the stage")
 
 
-def tilt(session: Session, degrees: float) -> None:
+def tilt(session: Session, steps: float) -> None:
     """Rotate the horizontal axis of the picture plane (Paper: Figure 5, ANGLE)."""
-    angle = session.scene.view.angle + degrees
+    angle = session.scene.view.angle + steps * TURN
     look(session, session.scene.view.replace(angle=angle))
     session.tell(f"angle {session.scene.view.angle:g} degrees")
 

@@ -18,6 +18,8 @@ from autocolor.screens.picture.over_picture import (
     surface_row,
 )
 from autocolor.screens.picture.picture_edits import (
+    CLOSER,
+    TURN,
     as_opened,
     move,
     pan,
@@ -35,10 +37,6 @@ from autocolor.widgets.items import SCREEN
 from autocolor.widgets.menu import WORK, Section
 from autocolor.widgets.widget import Button, Choice, Pair, Steps, Widget, titled
 
-TURN: Final = 5.0
-"""Degrees for each step of a menu row that turns."""
-
-CLOSER: Final = 0.9
 PAN: Final = 16.0
 """Elements or lines for each step of a menu row that moves the picture."""
 

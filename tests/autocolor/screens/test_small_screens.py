@@ -250,7 +250,7 @@ def test_a_failed_computation_is_not_cached() -> None:
 
 PAGES = {
     "picture": 1627038444,
-    "light and view": 3969270681,
+    "light and view": 4096469850,
     "lights": 1998067492,
     "reflectance": 567192626,
     "mixing": 81988555,

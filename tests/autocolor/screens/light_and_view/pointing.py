@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from autocolor import Light, Scene, Surface, View, scene_of
 from autocolor.checks import Vector
-from autocolor.screens.light_and_view.handles import MovablePoint, points_in
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
+from autocolor.screens.light_and_view.marks import MovablePoint, points_in
 from autocolor.screens.light_and_view.orthographic_views import OrthographicViews, fitted_views, shown_points
 from autocolor.screens.screen import Handle
 from autocolor.screens.viewer import Viewer

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Part, View, scene_of
-from autocolor.checks import LARGEST_COORDINATE, Vector
+from autocolor.checks import Vector
 from autocolor.screens.light_and_view.orthographic_views import (
     EDGE,
     FILLED,
@@ -93,13 +93,6 @@ def test_a_placed_coordinate_has_no_more_decimals_than_tell_the_pixel() -> None:
     middle = TOP.area.middle
     moved = UNIT.placed(TOP, (0.123456, 0.0, 0.5), round(middle[0] + 40.5), round(middle[1] - 60.5))
     assert moved == (4.05, 6.05, 0.5)
-
-
-def test_no_point_is_placed_beyond_the_largest_coordinate() -> None:
-    views = fitted_views(np.array([[-1e30, -1e30, -1e30], [1e30, 1e30, 1e30]]))
-    for side in SIDES:
-        placed = views.placed(side, (0.0, 0.0, 0.0), side.area.left, side.area.top)
-        assert max(map(abs, placed)) == LARGEST_COORDINATE
 
 
 @given(st.lists(vectors(), min_size=1, max_size=9), st.floats(-12, 12))

@@ -7,6 +7,8 @@ import pytest
 
 from autocolor import Scene, UsageError, View
 from autocolor.screens.picture.picture_edits import (
+    CLOSER,
+    TURN,
     moved,
     panned,
     rescale_surface,
@@ -14,7 +16,7 @@ from autocolor.screens.picture.picture_edits import (
     sides_of,
     turned,
 )
-from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
+from autocolor.screens.picture.picture_screen import PAN
 from autocolor.screens.steps import undo
 from autocolor.widgets.widget import Choice, Entry, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
