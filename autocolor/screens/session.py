@@ -109,7 +109,8 @@ class LastEdit(NamedTuple):
     """The number of further words for the same page: for menus, panels and the legend.
 
     If the edit did not change the words of the picture, and another screen turned to the picture, they also
-    include the picture.
+    include the picture. The words of edits on screens without the picture are sent when it is shown again:
+    then these edits are the last edit.
     """
 
 
