@@ -89,7 +89,7 @@ class LightsScreen(OverPicture):
         # The list covers handles, also where they are within reach of a place beside it.
         covered = Area(*widgets[0].area[:2], *widgets[-1].area[2:]) if widgets else NOWHERE
         marks: Sequence[Item] = ()
-        handles = self._handles.handles() if self._points is None else ()
+        handles = [*content.handles, *self._handles.handles()] if self._points is None else []
         if self._points is not None:
             marks = plane_items(self._points, self.session.scene.view)
         elif self.other_image(around) is None:
@@ -143,7 +143,7 @@ class LightsScreen(OverPicture):
                 choose=session.choose_light,
             ),
             *of(FIRST),
-            exposure_row(self.edits),
+            exposure_row(session),
             Section("place & aim"),
             *of(PLACE),
             Section("links"),

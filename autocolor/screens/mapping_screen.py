@@ -30,7 +30,7 @@ from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
-from autocolor.screens.screen import Content, Handle, Surroundings
+from autocolor.screens.screen import Content, Handle, Sample, Surroundings
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.items import (
@@ -96,8 +96,9 @@ class MappingScreen(OverPicture):
         return replace(
             content,
             items=items,
-            handles=handles,
+            handles=[*content.handles, *handles],
             hint=self._hint,
+            sample=self._sample,
             pick=self._pick,
             drag=self._drag,
             wheel=self._wheel,
@@ -135,7 +136,7 @@ class MappingScreen(OverPicture):
                 run=lambda: session.edit(session.scene.as_in_1983()),
             ),
             Gap("exposure gap"),
-            exposure_row(self.edits),
+            exposure_row(session),
             *surface_rows(session),
             *held_rows(session),
             Gap("scene gap"),
@@ -184,6 +185,9 @@ class MappingScreen(OverPicture):
             return self.hint(element, line)
         x, y = fractions_of(element, line)
         return f"intensity {x:.2f}, level {y:.2f}: a click or a drag makes a point here"
+
+    def _sample(self, element: int, line: int) -> Sample | None:
+        return None if PANEL.has(element, line) else self.sample(element, line)
 
     @property
     def _points(self) -> CurvePoints:

@@ -112,7 +112,8 @@ class LastEdit(NamedTuple):
     """The number of further words for the same page: for menus, panels and the legend.
 
     If the edit did not change the words of the picture, and another screen turned to the picture, they also
-    include the picture.
+    include the picture. The words of edits on screens without the picture are sent when it is shown again:
+    then these edits are the last edit.
     """
 
 
@@ -185,6 +186,8 @@ class Session:
     """The name of the part that was pointed at last; empty at first."""
     before_solo: Solo | None = None
     """The light that was last switched on alone, and the switches before."""
+    own_colors: dict[str, str] = field(default_factory=dict)
+    """By the name of a surface: its object color before a key gave it another."""
 
     # Files.
     autosave: Autosave | None = None

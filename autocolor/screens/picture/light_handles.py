@@ -106,7 +106,8 @@ class LightHandles:
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         """Handles near a place. Of several highlights, the light that shines most at the place is first."""
-        numbers = [n for n, each in enumerate(near) if _key_of(each).what == HIGHLIGHT]
+        keys = [each.key for each in near]
+        numbers = [n for n, key in enumerate(keys) if isinstance(key, HandleKey) and key.what == HIGHLIGHT]
         if len(numbers) < 2:
             return near
         shares = specular_shares(self.session.studio.picture, line, element)

@@ -14,10 +14,10 @@ from functools import partial
 from typing import Final
 
 from autocolor.mapping.colors import blend_from, blend_level
-from autocolor.screens.picture.over_picture import OverPicture, paint_rows, surface_row
+from autocolor.screens.picture.over_picture import OverPicture, surface_row
 from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import BLENDING, MIXING
-from autocolor.screens.surface.painting import change_paint
+from autocolor.screens.surface.painting import change_paint, paint_rows
 from autocolor.widgets.bars import LANE, LevelBar, PercentBar
 from autocolor.widgets.items import CHARACTER, WIDTH, Area, text
 from autocolor.widgets.menu import MENU

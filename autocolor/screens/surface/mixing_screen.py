@@ -40,16 +40,18 @@ from autocolor.scene.surfaces import MOST_RAMP_COLORS, Paint
 from autocolor.scene.swatches import FINISHES, mixed
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import FIRST_RAMP_COLORS, paint_rows, surface_row
+from autocolor.screens.picture.over_picture import surface_row
 from autocolor.screens.screen import Content, Sample, Screen, Surroundings, surface_of
 from autocolor.screens.session import BLENDING, Session
 from autocolor.screens.surface.mixing_palette import Crop, MixingWords, crop_of, mixing_words
 from autocolor.screens.surface.paint_choices import PaintChoices
 from autocolor.screens.surface.painting import (
+    FIRST_RAMP_COLORS,
     PaintColor,
     change_paint,
     color_of,
     edit_paint,
+    paint_rows,
     take_paint,
     with_finish,
     with_moved_color,

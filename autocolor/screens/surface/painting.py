@@ -1,20 +1,27 @@
-"""Edits of the colors of the chosen surface, and their messages."""
+"""Edits of the colors of the chosen surface, their rows in menus, and their messages."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Final, NamedTuple, Unpack
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any, Final, NamedTuple, Unpack
 
 import numpy as np
 
+from autocolor.arrays import half_up
 from autocolor.checks import Color
 from autocolor.errors import UsageError
-from autocolor.mapping.colors import entries_at
+from autocolor.mapping.colors import entries_at, entries_of
 from autocolor.scene.changes import PaintChanges
+from autocolor.scene.defaults import OBJECT_COLORS
+from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import Scene, unset_paints
 from autocolor.scene.surfaces import Paint
 from autocolor.scene.swatches import finished
 from autocolor.screens.session import Session
+from autocolor.widgets.rows import rows_of
+from autocolor.widgets.widget import Switch, Widget
 
 TWO_COLORS: Final = ("object", "light source")
 """The names of the two colors of a paint for users, in the order of their numbers."""
@@ -127,3 +134,80 @@ def take_paint(session: Session, name: str) -> None:
         raise UsageError(f"{name} is the chosen surface; point at another, whose paint it takes")
     scene = session.scene.with_surface(chosen, paint=session.scene.surfaces[name].paint)
     edit_paint(session, scene, f"{chosen}: the paint of {name}; undo goes back")
+
+
+def paint_rows(session: Session, paint: Paint) -> list[Widget]:
+    """The rows of the chosen surface's paint without its colors: whether it has a ramp, else the blend."""
+    switch = Switch(
+        "ramp",
+        "A ramp of any colors from the lowest level to the highest, instead of two colors and their blend.",
+        is_on=paint.ramp is not None,
+        flip=partial(_flip_ramp, session, paint),
+    )
+    if paint.ramp is not None:
+        return [switch]
+
+    def put(changes: Mapping[str, Any]) -> None:
+        change_paint(session, **changes)
+
+    rows = rows_of(paint, put, session.world, leave_out=("object_color", "light_color"))
+    # Shorten labels so that they fit beside their numbers.
+    return [switch, *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows)]
+
+
+FIRST_RAMP_COLORS: Final = 6
+"""Assumed: colors of a ramp that is switched on. The default blend, 0.6, begins at the fourth, so the surface
+looks nearly as before."""
+
+
+def _flip_ramp(session: Session, paint: Paint) -> None:
+    """Give the chosen surface a ramp that looks like its paint, or two colors instead of its ramp."""
+    if paint.ramp is not None:
+        change_paint(session, ramp=None)
+        return
+    image, name = session.studio.display_image, session.surface_name
+    entries = entries_of(paint, image.ranges[name].levels, image.floor_of(name))
+    steps = FIRST_RAMP_COLORS - 1
+    levels = [half_up(step * (len(entries) - 1) / steps) for step in range(steps + 1)]
+    change_paint(session, ramp=entries[levels].tolist())
+
+
+# The object colors that a key steps through: the default colors of new surfaces, and a surface's own color.
+
+
+def color_after(present: str, own: str, step: int, colors: Sequence[str] = OBJECT_COLORS) -> str:
+    """The color that is `step` positions further than the present one, among different `colors`.
+
+    The surface's own color comes first if the colors do not contain it. If they do not contain the present
+    color, the first color follows.
+
+    >>> color_after("#ff0000", "#ff0000", 1), color_after("#f4a39b", "#ff0000", -1)
+    ('#f4a39b', '#ff0000')
+    """
+    colors = colors if own in colors else (own, *colors)
+    place = colors.index(present) + step if present in colors else 0
+    return colors[place % len(colors)]
+
+
+def blend(session: Session, step: float) -> None:
+    """Change the blend of the chosen surface."""
+    if session.chosen_surface is not None:
+        blend = min(1.0, max(0.0, round(session.chosen_surface.paint.blend + step, 6)))
+        change_paint(session, lambda paint: f"blend {paint.blend:.2f}", blend=blend)
+
+
+def repaint(session: Session, step: int) -> None:
+    """Give the chosen surface another object color, `step` positions further.
+
+    The colors are its own and the paints that the user brought, or OBJECT_COLORS.
+    """
+    if session.chosen_surface is None:
+        return
+    present = in_digits(session.chosen_surface.paint.color)
+    names = dict.fromkeys(OBJECT_COLORS, "")
+    if (paints := session.paints) is not None:
+        names = dict(zip(map(in_digits, paints.colors), paints.names, strict=True))
+    own = session.own_colors.setdefault(session.surface_name, present)
+    color = color_after(present, own, step, tuple(names))
+    message = f"object color {', '.join(part for part in (names.get(color), color) if part)}"
+    change_paint(session, lambda _: message, object_color=color)

@@ -8,7 +8,6 @@ import pytest
 from autocolor import Mesh, Scene, scene_of
 from autocolor.scene.columns import fields_of
 from autocolor.scene.scalar import MeshScalar, Scalar
-from autocolor.screens.scalar_screen import ScalarScreen
 from tests.autocolor.screens.boxes import hand_at, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
 from tests.small import boxes
@@ -44,19 +43,16 @@ def test_every_column_of_the_scalar_has_a_row(hand: Hand) -> None:
 
 def test_the_legend_is_dragged_and_let_go_again(hand: Hand) -> None:
     hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="z", legend=True))
-    screen = hand.viewer.board.screen
-    assert isinstance(screen, ScalarScreen)
 
     def place() -> tuple[int, int]:
         hand.viewer.tell("")
-        assert screen._legend is not None
-        return screen._legend.swatches[0][:2]
+        return hand.handle("the legend")
 
     before = hand.viewer.studio.scene
     left, top = place()
     hand.viewer.tell("")
     hand.move(left + 5, top + 20)
-    assert hand.viewer.board.messages[-1].text == "the legend: drag it"
+    assert hand.viewer.board.messages[-1].text == "the legend: drag it, or click here and where it goes"
     hand.drag((left + 5, top + 20), (left - 90, top + 50), (left + 105, top + 80))
     assert place() == (left + 100, top + 60)
     assert hand.viewer.studio.scene.view == before.view

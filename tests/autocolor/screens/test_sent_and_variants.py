@@ -198,6 +198,34 @@ def test_a_coarse_picture_is_followed_by_the_words_of_its_refined_picture(
     assert "WI" in names_in(refined.words)
 
 
+@pytest.mark.parametrize("page", ["picture", "light and view", "mixing"])
+def test_the_words_of_a_turned_view_are_told_when_they_go(
+    recorded: Recorded, monkeypatch: pytest.MonkeyPatch, page: str
+) -> None:
+    viewer = recorded.viewer
+    recorded.edit(EDITS["object color"](SCENE))
+    before = viewer.studio.scene
+    viewer.session.turn_to(page)
+    viewer.tell("")
+    # The coarse picture of a movement is refined by the turn to the listing.
+    monkeypatch.setattr("autocolor.studio.block_for", lambda *_: 2)
+    viewer.on_key("left")
+    if page != "picture":
+        # Another edit before the picture is shown again belongs to its words.
+        recorded.edit(viewer.studio.scene.with_light("fill", intensity=2))
+    viewer.on_key("f2")
+    assert not viewer.studio.is_coarse
+    sent = recorded.sent_by(lambda: viewer.on_key("f2"))
+    last = last_edit(viewer)
+    assert (last.before, last.after) == (before, viewer.studio.scene)
+    assert sent.startswith(last.words.astype("<u2").tobytes())
+    assert sum(name == "WI" for name in names_in(last.words)) > 1
+    # Comparing shows words of another scene, which are no edit.
+    viewer.on_key("b", typed="b")
+    viewer.on_release("b")
+    assert last_edit(viewer) is last
+
+
 @given(st.lists(st.tuples(st.integers(0, 255), st.integers(0, 255)), min_size=1, max_size=20))
 def test_a_listing_that_is_whole_assembles_to_the_words(colors: list[tuple[int, int]]) -> None:
     words = instructions.load_entries(7, [(red, green, 9) for red, green in colors])

@@ -152,7 +152,7 @@ def test_lines_come_one_view_at_a_time_and_move_with_the_views_until_they_are_fo
         assert drawn == [place < number for place in range(3)]
         assert lines.find_next(scene, fitted) == (number < 3)
     assert lines.page(scene, fitted) is page
-    moved = fitted.centered((0.5 + 20 / fitted.scale, 0.5, 0.5 - 10 / fitted.scale))
+    moved = fitted.panned(FRONT, -20, -10)
     before = part_of(page, FRONT.area)
     now = part_of(lines.page(scene, moved), FRONT.area)
     assert np.array_equal(now[:-10, :-20], before[10:, 20:])

@@ -60,16 +60,17 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     assert hand.hint == hand.viewer.board.screen.help
 
 
-def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
+def test_the_legend_is_picked_and_placed_but_not_that_of_another_state(tmp_path: Path) -> None:
     hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
     session = hand.viewer.session
     hand.click(600, 100)
-    assert hand.message == "the legend: drag it"
+    assert hand.message == "the legend: pick its new place"
+    hand.click(40, 120)
+    assert hand.handle("the legend") == (40, 120)
+    hand.press("Ctrl+Z")
     session.edit(session.scene.replace(scalar=None))
     before = session.scene
     show_other(hand.viewer)
-    hand.move(600, 100)
-    assert hand.viewer.board.content.hint(600, 100) == hand.viewer.board.screen.help
     hand.drag((600, 100), (500, 150))
     assert session.scene.view != before.view
     assert not session.news.is_warning
@@ -133,7 +134,7 @@ KEYS: dict[str, tuple[str, Callable[[Scene], Scene]]] = {
     "Shift+S": ("surface floor", lambda scene: scene),
     "[": ("blend 0.55", lambda scene: scene.with_paint("paint", blend=0.55)),
     "]": ("blend 0.65", lambda scene: scene.with_paint("paint", blend=0.65)),
-    ".": ("", lambda scene: scene.with_view(angle=5.0)),
+    ".": ("angle 5 degrees", lambda scene: scene.with_view(angle=5.0)),
     "home": ("the view as opened", lambda scene: scene),
 }
 

@@ -6,8 +6,17 @@ from pathlib import Path
 import pytest
 
 from autocolor import Scene, UsageError, View
-from autocolor.screens.picture.picture_edits import PictureEdits, moved, panned, seen_from, sides_of, turned
-from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
+from autocolor.screens.picture.picture_edits import (
+    CLOSER,
+    TURN,
+    moved,
+    panned,
+    rescale_surface,
+    seen_from,
+    sides_of,
+    turned,
+)
+from autocolor.screens.picture.picture_screen import PAN
 from autocolor.screens.steps import undo
 from autocolor.widgets.widget import Choice, Entry, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
@@ -143,7 +152,7 @@ def test_a_stage_is_a_row_and_its_backdrop_has_two_colors(hand: Hand) -> None:
     assert hand.scene.backdrop_colors == (start.replace(stage="floor").backdrop_colors[0], (18, 52, 86))
     hand.viewer.session.choose_surface("stage")
     with pytest.raises(UsageError, match="the view fills with the object, not with its stage"):
-        PictureEdits(hand.viewer.session).rescale(True)
+        rescale_surface(hand.viewer.session)
 
 
 def test_highlights_are_marked_while_the_pointer_rests_on_the_object(tmp_path: Path) -> None:
