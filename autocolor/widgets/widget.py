@@ -266,8 +266,7 @@ class Steps(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         low, high = self.signs
-        room = self.characters - len(low) - len(high) - 2
-        return self.row(lit, f"{low} {fitted(self.label, room)}", high)
+        return self.row(lit, f"{low} {self.label}", high)
 
     def pick(self, place: Place) -> object:
         return self.step(1 if place.element > (self.area.left + self.area.right) / 2 else -1)
@@ -444,13 +443,5 @@ def titled(noun: str, name: str) -> str:
     return name if name.startswith(noun) else f"{noun} {name}"
 
 
-def short_name(name: str, most: int) -> str:
-    """A name of at most `most` characters. Longer names lose their middle, because their ends differ.
-
-    >>> short_name("fender of the left door 12.obj", 16)
-    'fender .. 12.obj'
-    """
-    if len(name) <= most:
-        return name
-    end = max(0, (most - 2) // 2)
-    return f"{name[: max(0, most - 2 - end)]}..{name[len(name) - end :]}"[: max(0, most)]
+short_name: Final = fitted
+"""An older name of `fitted`."""
