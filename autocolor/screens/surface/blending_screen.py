@@ -52,7 +52,7 @@ class BlendingScreen(OverPicture):
         right = (MENU.left if around.has_menu else WIDTH) - BESIDE
         if surface.paint.ramp is None:
             return replace(content, items=(), widgets=self._bars(right))
-        label = f"{surface.name} has a ramp and no blend; change the ramp in color mixing"
+        label = "a ramp has no blend; change the ramp in color mixing"
         return replace(content, items=[text(label, right - CHARACTER * len(label), TOP + TEXT_DOWN)])
 
     def _escape(self) -> bool:
