@@ -42,7 +42,6 @@ def _rename_view(session: Session, old: str, same_step: bool, text: str) -> None
     session.same_step = same_step
     new = text.strip()
     session.edit(session.scene.with_named_view(old, name=new))
-    session.camera = new
     session.tell(titled("camera", new))
 
 
