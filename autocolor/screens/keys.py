@@ -5,25 +5,12 @@ from __future__ import annotations
 from typing import Final, Protocol
 
 from autocolor.errors import UsageError
+from autocolor.scene.orbit import sides_of
 from autocolor.screens.board import Board
 from autocolor.screens.file_actions import read_again, save, save_image
 from autocolor.screens.input import Binding, Chord
-from autocolor.screens.picture.picture_edits import (
-    CLOSER,
-    TURN,
-    as_opened,
-    move,
-    next_surface,
-    rescale,
-    rescale_surface,
-    see_from,
-    sides_of,
-    switch_exposure,
-    switch_light,
-    tilt,
-    turn,
-    view_again,
-)
+from autocolor.screens.picture import picture_edits as edits
+from autocolor.screens.picture.picture_edits import CLOSER, TURN
 from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.screens.steps import compare, end_comparing, redo, undo
 from autocolor.screens.surface.painting import blend, repaint, take_paint
@@ -99,7 +86,7 @@ def redo_step(viewer: Driven) -> None:
 def go_to_view(viewer: Driven, back: bool) -> None:
     """Return to the view before, or forward to the view that was left."""
     viewer.show_scene()
-    view_again(viewer.session, back)
+    edits.view_again(viewer.session, back)
 
 
 def reopen(viewer: Driven) -> None:
@@ -190,58 +177,58 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding(
         (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
         "turn around the object; finely with Shift",
-        lambda viewer, number: turn(viewer.session, (-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
+        lambda viewer, number: edits.turn(viewer.session, (-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
         label="Left, Right",
         held=True,
     ),
     Binding(
         (Chord("up"), Chord("down"), Chord("up", shift=True), Chord("down", shift=True)),
         "look from above, from below; finely with Shift",
-        lambda viewer, number: turn(viewer.session, 0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
+        lambda viewer, number: edits.turn(viewer.session, 0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
         label="Up, Down",
         held=True,
     ),
     Binding(
         (Chord("+"), Chord("="), Chord("-")),
         "move closer, farther",
-        lambda viewer, number: move(viewer.session, (CLOSER, CLOSER, 1 / CLOSER)[number]),
+        lambda viewer, number: edits.move(viewer.session, (CLOSER, CLOSER, 1 / CLOSER)[number]),
         label="+ and -",
         held=True,
     ),
     Binding(
         (Chord(","), Chord(".")),
         "rotate the picture's horizontal axis",
-        lambda viewer, number: tilt(viewer.session, (-1, 1)[number]),
+        lambda viewer, number: edits.tilt(viewer.session, (-1, 1)[number]),
         label="comma, period",
         held=True,
     ),
     Binding(
         (*(Chord(f"f{number}") for number in range(5, 10)), Chord("f6", shift=True)),
         "view from front, left (Shift: right), back, top, corner",
-        lambda viewer, number: see_from(viewer.session, tuple(sides_of(viewer.session.scene))[number]),
+        lambda viewer, number: edits.see_from(viewer.session, list(sides_of(viewer.session.scene))[number]),
         label="F5 to F9",
     ),
     Binding(
         (Chord("r"), Chord("r", shift=True)),
         "rescale: fill the picture with the object, the surface",
-        lambda viewer, number: (rescale, rescale_surface)[number](viewer.session),
+        lambda viewer, number: (edits.rescale, edits.rescale_surface)[number](viewer.session),
     ),
     Binding(
         (Chord("home"),),
         "the view as opened",
-        lambda viewer, _: as_opened(viewer.session),
+        lambda viewer, _: edits.as_opened(viewer.session),
         label="Home",
     ),
     Binding(
         tuple(Chord(str(digit)) for digit in range(1, 10)),
         "switch a light on or off",
-        lambda viewer, number: switch_light(viewer.session, number),
+        lambda viewer, number: edits.switch_light(viewer.session, number),
         label="1 to 9",
     ),
     Binding(
         (Chord("s"), Chord("s", shift=True)),
         "select the next surface, the previous one",
-        lambda viewer, number: next_surface(viewer.session, (1, -1)[number]),
+        lambda viewer, number: edits.next_surface(viewer.session, (1, -1)[number]),
         repeats=True,
     ),
     Binding(
@@ -271,7 +258,7 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding(
         (Chord("e"),),
         "hold the exposure (less light is darker), release it",
-        lambda viewer, _: switch_exposure(viewer.session),
+        lambda viewer, _: edits.switch_exposure(viewer.session),
     ),
     Binding(
         (Chord("w"),),

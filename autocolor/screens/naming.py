@@ -26,7 +26,6 @@ def name_view(session: Session, name: str, is_new: bool = False) -> None:
 
     def rename(new: str) -> None:
         session.edit(session.scene.with_named_view(name, name=new))
-        session.camera = new
 
     _ask(session, "camera", name, rename, is_new)
 

@@ -174,8 +174,6 @@ class Session:
     """The line and the element of the pixel that is explained."""
     side_view: tuple[View, str] | None = None
     """The view from a named side that was taken last, and the name of the side."""
-    camera: str = ""
-    """The name of the named view that was taken last."""
 
     # The chosen things.
     surface: int = 0

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from autocolor.arrays import Floats
 from autocolor.errors import UsageError
+from autocolor.scene.orbit import side_name
 from autocolor.scene.scene import FRONTS
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
@@ -28,8 +29,8 @@ from autocolor.screens.light_and_view.orthographic_views import (
     side_at,
 )
 from autocolor.screens.light_parameters import KIND, parameter_rows
+from autocolor.screens.picture import picture_edits as edits
 from autocolor.screens.picture.over_picture import camera_rows, light_switches
-from autocolor.screens.picture.picture_edits import as_opened, move, rescale, side_name, tilt, turn
 from autocolor.screens.screen import Content, Handle, Screen, Surroundings
 from autocolor.screens.session import Session
 from autocolor.widgets.items import CHARACTER_LINES, GRAY, SLATE, Item, filled, image, outline, text
@@ -188,13 +189,13 @@ class LightAndViewScreen(Screen):
     def _drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         side = side_at(start.element, start.line)
         if PICTURE_AREA.has(start.element, start.line):
-            turn(self.session, *turn_between(last.element, last.line, now.element, now.line))
+            edits.turn(self.session, *turn_between(last.element, last.line, now.element, now.line))
         elif side is not None:
             self.views = self.views.panned(side, now.element - last.element, now.line - last.line)
 
     def _wheel(self, gesture: Gesture) -> None:
         if PICTURE_AREA.has(gesture.element, gesture.line):
-            move(self.session, wheel_ratio(gesture.steps))
+            edits.move(self.session, wheel_ratio(gesture.steps))
         else:
             self._zoom(gesture.steps / 2)
 
@@ -239,11 +240,9 @@ class LightAndViewScreen(Screen):
                 present=self._shown,
                 choose=partial(setattr, self, "_shown"),
             ),
-            Steps("angle", "ANGLE: turn the picture.", step=partial(tilt, session), signs=("<", ">")),
-            Button(
-                "frame", "Move the eye so that the object fills the picture.", run=partial(rescale, session)
-            ),
-            Button("as opened", "Look as the scene's file says.", run=partial(as_opened, session)),
+            Steps("angle", "ANGLE: turn the picture.", step=partial(edits.tilt, session), signs=("<", ">")),
+            Button("frame", "Fill the picture with the object.", run=partial(edits.rescale, session)),
+            Button("as opened", "Look as the scene's file says.", run=partial(edits.as_opened, session)),
             *camera_rows(session),
         ]
 

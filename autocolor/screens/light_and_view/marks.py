@@ -16,6 +16,7 @@ import numpy as np
 from autocolor.arrays import Floats, Numbers
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
+from autocolor.scene.orbit import side_name, target_of
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import ASPECT, View
 from autocolor.screens.light_and_view.orthographic_views import (
@@ -24,7 +25,6 @@ from autocolor.screens.light_and_view.orthographic_views import (
     PointMark,
     ViewSide,
 )
-from autocolor.screens.picture.picture_edits import side_name, target_of
 from autocolor.screens.screen import Handle
 from autocolor.widgets.items import (
     BLUE,

@@ -14,8 +14,8 @@ import numpy as np
 
 from autocolor.arrays import Floats, bounds_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
+from autocolor.scene.orbit import target_of
 from autocolor.scene.scene import Scene
-from autocolor.screens.picture.picture_edits import target_of
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import WORK
 

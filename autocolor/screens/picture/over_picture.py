@@ -3,40 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, ClassVar, Final, NamedTuple
+from typing import ClassVar, Final, NamedTuple
 
 from autocolor.checks import Color
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.intensity import held_name
-from autocolor.mapping.legend import CORNERS, GROUND, INK, Corner, Legend, legend
+from autocolor.mapping.legend import CORNERS, Corner, Legend, legend
 from autocolor.scene.defaults import TRIMMED
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.scene import AUTO
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.naming import name_view
-from autocolor.screens.picture.picture_edits import (
-    ALL_HELD,
-    choose_exposure,
-    move,
-    pan,
-    present_camera,
-    remove_view,
-    save_view,
-    switch_light,
-    take_view,
-    turn,
-)
+from autocolor.screens.picture import picture_edits as edits
 from autocolor.screens.screen import Content, Handle, Sample, Screen, Surroundings, surface_at
 from autocolor.screens.session import EXPLAIN, Session
 from autocolor.screens.steps import end_comparing
 from autocolor.screens.surface.painting import change_paint, color_of
-from autocolor.widgets.items import Area, Item, filled, text
+from autocolor.sending import drawn_legend
+from autocolor.widgets.items import Area, Item
 from autocolor.widgets.menu import MENU
-from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Entry, Pair, Switch, Widget, titled
+from autocolor.widgets.widget import Button, Choice, Pair, Switch, Widget, titled
 
 
 class OverPicture(Screen):
@@ -48,20 +37,25 @@ class OverPicture(Screen):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._legend: Cached[Legend | None] = Cached()
+        self._legend: Cached[tuple[Sequence[Item], Sequence[Handle]]] = Cached()
 
     def build(self, around: Surroundings) -> Content:
         """The picture with the legend of a scalar, and the gestures that turn it."""
         other, present = self.other_image(around), self.session.studio.display_image
-        image, has_menu = other or present, around.has_menu
-        free = (MENU.left, self.corners, MENU.top) if has_menu else (None, self.corners)
-        found = self._legend.of(lambda: legend(image, *free), image, has_menu)
+        image = other or present
+
+        def draw() -> tuple[Sequence[Item], Sequence[Handle]]:
+            free = (MENU.left, self.corners, MENU.top) if around.has_menu else (None, self.corners)
+            found = legend(image, *free)
+            return ((), ()) if found is None else ([legend_item(found)], [legend_handle(self.session, found)])
+
+        items, handles = self._legend.of(draw, image, around.has_menu)
         return Content(
             base=image.words,
-            items=() if found is None else legend_items(found),
+            items=items,
             loads=() if other is None else ((0, other.entries),),
             # The legend of another state cannot be moved.
-            handles=() if found is None or other else [legend_handle(self.session, found)],
+            handles=handles if other is None else (),
             hint=self.hint,
             sample=self.sample,
             color_at=self._color_at,
@@ -123,15 +117,15 @@ class OverPicture(Screen):
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         """Turn around the object, or move the picture."""
         if start.button == MIDDLE or start.shift:
-            pan(self.session, now.element - last.element, now.line - last.line)
+            edits.pan(self.session, now.element - last.element, now.line - last.line)
         elif start.control:
-            move(self.session, wheel_ratio((last.line - now.line) / 8))
+            edits.move(self.session, wheel_ratio((last.line - now.line) / 8))
         else:
-            turn(self.session, *turn_between(last.element, last.line, now.element, now.line))
+            edits.turn(self.session, *turn_between(last.element, last.line, now.element, now.line))
 
     def wheel(self, gesture: Gesture) -> None:
         """Move closer, or farther."""
-        move(self.session, wheel_ratio(gesture.steps))
+        edits.move(self.session, wheel_ratio(gesture.steps))
 
     def pointed(self, element: int, line: int) -> Pointed | None:
         """The surface and the part at a place; None on the background, and while another state is shown."""
@@ -169,10 +163,9 @@ class Pointed(NamedTuple):
         return f"{' - '.join(self.names)}, {self.value}"
 
 
-def legend_items(legend: Legend) -> Sequence[Item]:
-    """The items that draw a legend."""
-    areas = [filled(Area(*swatch[:4]), swatch.word) for swatch in legend.swatches]
-    return [*areas, *(text(each.text, each.left, each.top, INK, GROUND) for each in legend.labels)]
+def legend_item(legend: Legend) -> Item:
+    """The item that draws a legend."""
+    return Item(Area(*legend.swatches[0][:4]), drawn_legend(legend).tobytes(), is_solid=True)
 
 
 def legend_handle(session: Session, legend: Legend) -> Handle:
@@ -199,31 +192,10 @@ def exposure_row(session: Session) -> Choice:
         "exposure",
         "Auto: ranges of intensities follow the picture. Held: ranges stay, so that less light is darker."
         " A percentage: the brightest pixels do not set a range.",
-        names=tuple(dict.fromkeys((ALL_HELD, TRIMMED, AUTO, *words))),
-        present=next(iter(words), ALL_HELD if all(held) else MIXED),
-        choose=partial(choose_exposure, session),
+        names=tuple(dict.fromkeys((edits.ALL_HELD, TRIMMED, AUTO, *words))),
+        present=next(iter(words), edits.ALL_HELD if all(held) else MIXED),
+        choose=partial(edits.choose_exposure, session),
     )
-
-
-def stage_rows(session: Session) -> list[Widget]:
-    """The row of the stage of the object, and where there is a backdrop, the rows of its two colors."""
-    colors = session.scene.backdrop_colors
-
-    def put(changes: Mapping[str, Any]) -> None:
-        session.edit(session.scene.replace(**changes))
-
-    def entry(label: str, number: int) -> Entry:
-        help = "The color behind everything at the top or the bottom of the picture, as a name or #rrggbb."
-        others = colors[:number], colors[number + 1 :]
-        return Entry(
-            label,
-            help,
-            value=in_digits(colors[number]),
-            take=lambda color: put({"backdrop": [*others[0], color, *others[1]]}),
-        )
-
-    row = rows_of(session.scene, put, session.world, columns=("stage",))
-    return [*row, entry("backdrop", 0), entry("  bottom", 1)] if colors else row
 
 
 def camera_rows(session: Session) -> list[Widget]:
@@ -232,23 +204,27 @@ def camera_rows(session: Session) -> list[Widget]:
     save = "Save the present view under a new name, with the scene"
     if not views:
         return [
-            Button("save view", f"{save}; the row camera comes back to it.", run=partial(save_view, session))
+            Button(
+                "save view",
+                f"{save}; the row camera comes back to it.",
+                run=partial(edits.save_view, session),
+            )
         ]
     return [
         Choice(
             "camera",
             "Look through a saved view; a click on its name in the list renames it.",
             names=tuple(row.name for row in views),
-            present=present_camera(session),
-            choose=partial(take_view, session),
+            present=edits.present_camera(session),
+            choose=partial(edits.take_view, session),
             rename=partial(name_view, session),
         ),
         Pair(
             "save view",
             f"{save}; or remove the camera that is shown.",
-            run=partial(save_view, session),
+            run=partial(edits.save_view, session),
             other="remove",
-            run_other=partial(remove_view, session),
+            run_other=partial(edits.remove_view, session),
         ),
     ]
 
@@ -273,7 +249,7 @@ def light_switches(
             f"{number + 1} {light.name}" if has_numbers else light.name,
             f"Switch {titled('light', light.name)} on or off; beside the box: choose it.",
             is_on=light.on,
-            flip=partial(switch_light, session, number),
+            flip=partial(edits.switch_light, session, number),
             choose=partial(choose, light.name),
             is_chosen=light.name == chosen,
         )

@@ -6,157 +6,15 @@ import math
 from collections.abc import Callable
 from typing import Final
 
-import numpy as np
-
-from autocolor.arrays import Floats
-from autocolor.checks import Vector
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
-from autocolor.scene.defaults import default_view, framed, stage_top
-from autocolor.scene.scene import Scene
-from autocolor.scene.stage import NONE, shape_of
+from autocolor.scene.defaults import framed
+from autocolor.scene.orbit import lowest_eye, moved, panned, seen_from, turned
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import View
 from autocolor.screens.naming import name_view
 from autocolor.screens.session import Session
-from autocolor.visibility.projection import focal_length
 from autocolor.widgets.widget import titled
-
-# Orbiting: views with the eye moved around its target, closer to it, farther away or beside it.
-#
-# Some views have names: those from the sides of the object.
-
-HIGHEST: Final = math.radians(85)
-"""Assumed: the largest elevation; closer to the vertical, a small step would spin the picture."""
-
-ABOVE_STAGE: Final = 0.01
-"""Assumed: how far an eye stays above the stage, as a part of its distance from the target."""
-
-SIDE_NAMES: Final = ("front", "left", "back", "right")
-"""The sides of an object whose front is known. Left and right are the object's own."""
-
-AXIS_NAMES: Final = {
-    (0.0, -1.0, 0.0): "from -y",
-    (1.0, 0.0, 0.0): "from x",
-    (0.0, 1.0, 0.0): "from y",
-    (-1.0, 0.0, 0.0): "from -x",
-}
-"""The sides of other objects, by the direction toward the eye."""
-
-TOP: Final = "top"
-THREE_QUARTERS: Final = "three quarters"
-
-
-def front_of(scene: Scene) -> Vector:
-    """The direction toward which the object faces; -y, as on an engineering drawing, if that is not known."""
-    sign = -1.0 if (scene.front or "-y").startswith("-") else 1.0
-    return (sign, 0.0, 0.0) if (scene.front or "").endswith("x") else (0.0, sign, 0.0)
-
-
-def sides_of(scene: Scene) -> dict[str, Vector | None]:
-    """The directions toward the eye of the views from the sides, in the order of their keys.
-
-    Three quarters, which is None, is the direction of a created view, turned with the front.
-    Assumed: as on an engineering drawing, x is to the right and z up in the view from -y, y to the right and
-    z up in the view from x, x to the right and y up in the top view.
-    """
-    x, y, _ = front_of(scene)
-    ring = ((x, y, 0.0), (0.0 - y, x, 0.0), (0.0 - x, 0.0 - y, 0.0), (y, 0.0 - x, 0.0))
-    names = SIDE_NAMES if scene.front else [AXIS_NAMES[toward] for toward in ring]
-    front, left, back, right = zip(names, ring, strict=True)
-    return dict([front, left, back, (TOP, (0.0, 0.0, 1.0)), (THREE_QUARTERS, None), right])
-
-
-def side_name(scene: Scene, toward_eye: Vector) -> str:
-    """The name of the view from a direction along an axis."""
-    return next(name for name, toward in sides_of(scene).items() if toward == toward_eye)
-
-
-def turned(scene: Scene, right: float, up: float) -> View:
-    """The view with the eye moved around the target by degrees to the right and up, at the same distance.
-
-    An eye above the stage stays above it, as in `moved` and `panned`.
-    """
-    target = np.array(target_of(scene))
-    away = np.array(scene.view.eye) - target
-    distance = float(np.linalg.norm(away)) or 1.0
-    azimuth = math.radians(scene.view.polar(_vector(target)).azimuth + right)
-    before = math.asin(max(-1.0, min(1.0, float(away[2]) / distance)))
-    lowest = max(-1.0, (lowest_eye(scene) - float(target[2])) / distance)
-    elevation = max(-HIGHEST, min(HIGHEST, before + math.radians(up)))
-    elevation = max(elevation, min(before, math.asin(min(1.0, lowest))))
-    # At the highest and lowest elevation, rounding would make a slightly different view.
-    if up and math.isclose(elevation, before, abs_tol=1e-9):
-        return scene.view
-    horizontal = math.cos(elevation)
-    eye = target + distance * np.array(
-        [horizontal * math.cos(azimuth), horizontal * math.sin(azimuth), math.sin(elevation)]
-    )
-    return scene.view.replace(eye=_vector(eye), target=_vector(target))
-
-
-def lowest_eye(scene: Scene) -> float:
-    """The least z coordinate that the eye may move to; minus infinity for an eye not above a stage."""
-    mesh, parts, eye = scene.mesh, scene.parts, scene.view.eye
-    top = stage_top(mesh, parts)
-    if scene.stage != NONE:
-        top = max(top, shape_of(mesh, parts).floor)
-    if eye[2] <= top:
-        return -math.inf
-    return min(eye[2], top + ABOVE_STAGE * math.dist(eye, target_of(scene)))
-
-
-def moved(scene: Scene, ratio: float) -> View:
-    """The view with the distance of the eye from the target multiplied by a ratio.
-
-    At the stage, the eye slides along it.
-    """
-    target = np.array(target_of(scene))
-    eye = target + (np.array(scene.view.eye) - target) * ratio
-    eye[2] = max(eye[2], lowest_eye(scene))
-    return scene.view.replace(eye=_vector(eye))
-
-
-def panned(scene: Scene, right: float, down: float, lines: int, elements: int) -> View:
-    """The view moved sideways, so that the target point moves by elements and lines in the picture.
-
-    `lines` and `elements` are the size of the picture.
-    """
-    view, target = scene.view, np.array(target_of(scene))
-    eye = np.array(view.eye)
-    axes = view.axes
-    depth = float((target - eye) @ axes[2])
-    step = depth / focal_length(lines, elements, view.field_of_view)
-    shift = -step * (right * axes[0] + down * axes[1])
-    missing = lowest_eye(scene) - float(eye[2] + shift[2])
-    if missing > 0:
-        # The steepest direction in the picture plane: only a shift along it changes the height.
-        steepest = np.array([0.0, 0.0, 1.0]) - axes[2, 2] * axes[2]
-        shift += steepest * missing / steepest[2]
-    return view.replace(eye=_vector(eye + shift), target=_vector(target + shift))
-
-
-def seen_from(scene: Scene, side: str) -> View:
-    """The upright view of the object from a side of `sides_of`, in which it fills the picture."""
-    toward_eye: Vector | Floats | None = sides_of(scene)[side]
-    if toward_eye is None:
-        right, toward, up = default_view(scene.object_coordinates).axes[2] * -1
-        x, y, _ = front_of(scene)
-        toward_eye = (-right * y - toward * x, right * x - toward * y, up)
-    eye, target = _vector(toward_eye), (0.0, 0.0, 0.0)
-    # The angle is 0, so that the view is upright, as on a drawing.
-    view = scene.view.replace(eye=eye, direction=None, target=target, angle=0.0)
-    return framed(view, scene.object_coordinates)
-
-
-def target_of(scene: Scene) -> Vector:
-    """The point to orbit: the view's target, else the point on the line of sight at the object's depth."""
-    return scene.view.orbit_target(*scene.object_bounds)
-
-
-def _vector(values: Floats | Vector) -> Vector:
-    return (float(values[0]), float(values[1]), float(values[2]))
-
 
 # The edits of the view of a session.
 
@@ -231,18 +89,13 @@ def present_side(session: Session) -> str:
 
 
 def present_camera(session: Session) -> str:
-    """The name of the named view that equals the present view; empty if there is none.
-
-    If several are equal, the named view that was taken last comes before the first.
-    """
-    names = [row.name for row in session.scene.views if row.view == session.scene.view]
-    return session.camera if session.camera in names else next(iter(names), "")
+    """The name of the first named view that equals the present view; empty if there is none."""
+    return next((row.name for row in session.scene.views if row.view == session.scene.view), "")
 
 
 def take_view(session: Session, name: str) -> None:
     """Make a named view the present view."""
     session.edit(session.scene.with_taken_view(name))
-    session.camera = name
     session.tell(f"camera: {name}")
 
 

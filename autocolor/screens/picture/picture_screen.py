@@ -2,40 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
+from autocolor.scene.kinds import in_digits
+from autocolor.scene.orbit import sides_of
 from autocolor.screens.file_actions import ask_to_leave, seeming_up, stand_up
 from autocolor.screens.light_parameters import all_lights_on, light_alone
+from autocolor.screens.picture import picture_edits as edits
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.over_picture import (
-    OverPicture,
-    camera_rows,
-    light_switches,
-    stage_rows,
-    surface_row,
-)
-from autocolor.screens.picture.picture_edits import (
-    CLOSER,
-    TURN,
-    as_opened,
-    move,
-    pan,
-    present_side,
-    rescale,
-    rescale_part,
-    rescale_surface,
-    see_from,
-    sides_of,
-    turn,
-)
+from autocolor.screens.picture.over_picture import OverPicture, camera_rows, light_switches, surface_row
+from autocolor.screens.picture.picture_edits import CLOSER, TURN
 from autocolor.screens.screen import Content, Surroundings, surface_at
 from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.widgets.items import SCREEN
 from autocolor.widgets.menu import WORK, Section
-from autocolor.widgets.widget import Button, Choice, Pair, Steps, Widget, titled
+from autocolor.widgets.rows import rows_of
+from autocolor.widgets.widget import Button, Choice, Entry, Pair, Steps, Widget, titled
 
 PAN: Final = 16.0
 """Elements or lines for each step of a menu row that moves the picture."""
@@ -90,7 +75,7 @@ class PictureScreen(OverPicture):
         return [
             *self._up_rows(),
             surface_row(session, "The surface that you edit; a click in the picture chooses, too."),
-            *stage_rows(session),
+            *self._stage_rows(),
             Section("light switches"),
             *light_switches(session, session.light_name, self._choose_light),
             *self._alone_rows(),
@@ -99,35 +84,38 @@ class PictureScreen(OverPicture):
                 "view",
                 "Look at the object from a side.",
                 names=tuple(sides_of(session.scene)),
-                present=present_side(session),
-                choose=partial(see_from, session),
+                present=edits.present_side(session),
+                choose=partial(edits.see_from, session),
             ),
             Steps(
-                "turn", "Turn around the object.", step=lambda n: turn(session, n * TURN, 0), signs=("<", ">")
+                "turn",
+                "Turn around the object.",
+                step=lambda n: edits.turn(session, n * TURN, 0),
+                signs=("<", ">"),
             ),
-            Steps("rise", "Look from lower or from higher.", step=lambda n: turn(session, 0, n * TURN)),
-            Steps("closer", "Move farther or closer.", step=lambda n: move(session, CLOSER**n)),
+            Steps("rise", "Look from lower or from higher.", step=lambda n: edits.turn(session, 0, n * TURN)),
+            Steps("closer", "Move farther or closer.", step=lambda n: edits.move(session, CLOSER**n)),
             Steps(
                 "move",
                 "Move the picture sideways.",
-                step=lambda n: pan(session, n * PAN, 0),
+                step=lambda n: edits.pan(session, n * PAN, 0),
                 signs=("<", ">"),
             ),
-            Steps("lift", "Move the picture down or up.", step=lambda n: pan(session, 0, -n * PAN)),
+            Steps("lift", "Move the picture down or up.", step=lambda n: edits.pan(session, 0, -n * PAN)),
             Section("other actions"),
             Pair(
                 "rescale",
                 "Fill the picture with the object, or with the chosen surface.",
-                run=partial(rescale, session),
+                run=partial(edits.rescale, session),
                 other="surface",
-                run_other=partial(rescale_surface, session),
+                run_other=partial(edits.rescale_surface, session),
             ),
             Pair(
                 "as opened",
                 f"Look as the scene's file says; or fill the picture with {session.part_name or 'a part'}.",
-                run=partial(as_opened, session),
+                run=partial(edits.as_opened, session),
                 other="part",
-                run_other=partial(rescale_part, session),
+                run_other=partial(edits.rescale_part, session),
             ),
             *camera_rows(session),
             Button(
@@ -169,6 +157,23 @@ class PictureScreen(OverPicture):
         session, up = self.session, seeming_up(self.session)
         help = f"The mesh seems to lie on its side: read it again with {up} up, or do nothing."
         return [Button("on its side? turn", help, run=partial(stand_up, session))] if up else []
+
+    def _stage_rows(self) -> list[Widget]:
+        """The row of the stage of the object, and where there is a backdrop, the rows of its two colors."""
+        session, colors = self.session, self.session.scene.backdrop_colors
+
+        def put(changes: Mapping[str, Any]) -> None:
+            session.edit(session.scene.replace(**changes))
+
+        rows = rows_of(session.scene, put, session.world, columns=("stage",))
+        help = "The color behind everything at the top or the bottom of the picture, as a name or #rrggbb."
+        if colors:
+            top, low = colors
+            rows += [
+                Entry("backdrop", help, value=in_digits(top), take=lambda top: put({"backdrop": [top, low]})),
+                Entry("  bottom", help, value=in_digits(low), take=lambda low: put({"backdrop": [top, low]})),
+            ]
+        return rows
 
     def _alone_rows(self) -> list[Widget]:
         """The row that switches on the chosen light alone."""

@@ -59,7 +59,7 @@ def test_a_camera_is_named_and_renamed_from_its_list(hand: Hand) -> None:
     for number in range(3):
         hand.viewer.session.edit(hand.scene.with_saved_view(f"view {number}"))
     hand.open_menu()
-    hand.choose("camera", hand.viewer.session.camera)
+    hand.choose("camera", "hero")
     hand.type("side")
     hand.press("return")
     assert [view.name for view in hand.scene.views] == ["side", "view 0", "view 1", "view 2"]

@@ -524,4 +524,4 @@ def test_the_views_are_drawn_as_they_were() -> None:
     note("nearer")
     hand = opened(coupe_scene())
     note("the coupe")
-    assert found == DRAWN
+    assert found == DRAWN, found

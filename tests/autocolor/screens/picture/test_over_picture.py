@@ -8,15 +8,11 @@ import numpy as np
 import pytest
 
 from autocolor import Paint, Scene, View
-from autocolor.mapping.legend import legend
+from autocolor.scene.orbit import moved, panned, turned
 from autocolor.screens.input import turn_between, wheel_ratio
 from autocolor.screens.keys import show_other
-from autocolor.screens.picture.over_picture import legend_items
-from autocolor.screens.picture.picture_edits import moved, panned, turned
 from autocolor.screens.session import Clipboard
 from autocolor.screens.viewer import Viewer
-from autocolor.sending import drawn_legend
-from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
@@ -169,18 +165,6 @@ def test_a_key_holds_the_exposure_and_releases_it(hand: Hand) -> None:
     hand.viewer.session.edit(hand.scene.replace(ambient=0.0))
     hand.press("e")
     assert hand.message.startswith("to hold the exposure, a surface must have different intensities")
-
-
-def test_a_screen_draws_the_same_legend_as_a_studio() -> None:
-    scene = boxes().with_scalar(name="z")
-    found = legend(Studio(scene, Ramtek9300()).display_image)
-    assert found is not None
-    drawn, by_items = Ramtek9300(), Ramtek9300()
-    drawn.send(drawn_legend(found))
-    for item in legend_items(found):
-        by_items.send(np.frombuffer(item.stream, np.uint16))
-    assert (drawn.words == by_items.words).all()
-    assert drawn.words.any()
 
 
 @pytest.mark.parametrize(
