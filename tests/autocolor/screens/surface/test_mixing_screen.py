@@ -529,4 +529,4 @@ def test_the_screens_of_paints_are_drawn_as_they_were(hand: PaintingHand) -> Non
     names = Palette(["#a52019", "#f8f32b"], ["Signal red", "Teal"])
     hand.viewer.session.paints, hand.viewer.session.paints_name = names, "paints.gpl"
     note("paints")
-    assert found == DRAWN, found
+    assert found == DRAWN
