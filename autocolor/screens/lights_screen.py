@@ -86,6 +86,9 @@ class LightsScreen(OverPicture):
     def build(self, around: Surroundings) -> Content:
         content, widgets = super().build(around), self._list() if around.has_panels else ()
         self._handles.area = WORK if around.has_menu else SCREEN
+        if self.session.chosen_light is None:
+            # Without a light, there is nothing that a plane could bound.
+            self._points = None
         # The list covers handles, also where they are within reach of a place beside it.
         covered = Area(*widgets[0].area[:2], *widgets[-1].area[2:]) if widgets else NOWHERE
         marks: Sequence[Item] = ()
@@ -216,11 +219,11 @@ class LightsScreen(OverPicture):
             buttons: list[Widget] = [
                 PanelButton(
                     name,
-                    f"{help}; a click replaces all lights.",
+                    f"{arrangement.help}; a click replaces all lights.",
                     within="arrangements",
                     run=partial(self._arrange, name),
                 )
-                for name, (help, *_) in ARRANGEMENTS.items()
+                for name, arrangement in ARRANGEMENTS.items()
             ]
             rows += [buttons[:3], buttons[3:]]
             names = [light.name for light in lights]
@@ -272,8 +275,7 @@ class LightsScreen(OverPicture):
     def _pick_point(self, gesture: Gesture) -> None:
         """Take the point that is seen at a place; the third point makes a half-space of the chosen light.
 
-        Raises InputError if the three points are in one line, or there is no light any more: the third point
-        must then be picked again.
+        Raises InputError if the three points are in one line; the third must then be picked again.
         """
         session, scene, points = self.session, self.session.scene, self._points or []
         seen = session.studio.seen_at(gesture.line, gesture.element)

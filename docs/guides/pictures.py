@@ -69,10 +69,8 @@ def light_alone() -> Field:
 def light_arrangements() -> Field:
     """The coupe in each arrangement of lights."""
     scene = read_scene(ROOT / "scenes" / "coupe")
-    panels = [
-        captioned(image(arranged(scene, name), size=(320, 240), smooth=4)[CAR], name, 1)
-        for name in ARRANGEMENTS
-    ]
+    pictures = {name: image(arranged(scene, name), size=(240, 180), smooth=4) for name in ARRANGEMENTS}
+    panels = [captioned(picture[30:150], name, 1) for name, picture in pictures.items()]
     return np.vstack([np.hstack(panels[:3]), np.hstack(panels[3:])])
 
 

@@ -326,13 +326,17 @@ def test_a_third_point_that_is_refused_is_picked_again(hand: Hand) -> None:
     pick_points(hand, [PLACES[0], PLACES[1], PLACES[0]])
     assert told(hand)[0].startswith("half-space 'plane': its three points must not be in a line")
     assert light_of(hand).half_spaces == ()
+    hand.click(*PLACES[2])
+    assert [plane.name for plane in light_of(hand).half_spaces] == ["plane"]
+    # Points for a light that is gone are forgotten.
+    pick_points(hand, PLACES[:2])
     session = hand.viewer.session
     session.edit(session.scene.replace(lights=()))
     hand.click(*PLACES[2])
-    assert told(hand)[1]
+    assert not told(hand)[1]
     session.edit(boxes())
     hand.click(*PLACES[2])
-    assert [plane.name for plane in light_of(hand).half_spaces] == ["plane"]
+    assert light_of(hand).half_spaces == ()
 
 
 def test_points_behind_the_eye_have_no_place() -> None:
