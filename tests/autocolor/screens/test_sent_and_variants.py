@@ -18,7 +18,7 @@ from autocolor.images import display_image
 from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.message_line import MESSAGE
-from autocolor.screens.pages import CHARACTERS, LEFT, TOP, TextRow
+from autocolor.screens.pages import CHARACTERS, LEFT, TOP, PageRow
 from autocolor.screens.sent_screen import rows_of_edit
 from autocolor.screens.session import LastEdit
 from autocolor.screens.variants_screen import ELEMENTS, FRAME, LINES, ON_PAGE, PLACES
@@ -89,7 +89,7 @@ def names_in(words: Words) -> list[str]:
     return [instruction.format.name for instruction in listed if instruction is not None]
 
 
-def listing_of(words: Words) -> list[TextRow]:
+def listing_of(words: Words) -> list[PageRow]:
     """The rows below the table of shares."""
     rows = rows_of_edit(LastEdit(SCENE, SCENE, words, 0), GMR_9300)
     return rows[max(number for number, row in enumerate(rows) if not row.text) + 1 :]
