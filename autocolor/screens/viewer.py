@@ -85,7 +85,7 @@ class Viewer:
         self._base: Words | int | None = None
         """The base of the page that was shown last."""
         self._words: Words | None = None
-        """The words of the picture that was shown last."""
+        """The words of the studio's picture when that page was shown."""
         hints = "F1: help", "Tab or the right edge: the menu", lying(self.session)
         self.session.tell("; ".join(filter(None, hints)), persistent=True)
         self._update()
@@ -277,26 +277,26 @@ class Viewer:
         if self.session.watches:
             self.watch()
             return
-        if self.board.turn():
+        has_turned = self.board.turn()
+        if has_turned:
             self._refine()
         self._had_news = self.session.has_news
         self.board.forget()
         page = self.board.page()
-        self._note(self._sheet.show(page))
+        self._note(self._sheet.show(page), has_turned)
         if page.base is not self._base and not self.board.is_dragging:
             # The hint for the pointer reads a word back from the display, which has the new base only now.
             self._sheet.show(self.board.page())
         self._base = page.base
         self._unit.mark(self.board.mark)
 
-    def _note(self, sent: Sent) -> None:
-        """Note the words of a page that shows an edit, or the picture of the last edit when it goes."""
+    def _note(self, sent: Sent, has_turned: bool) -> None:
+        """Note the words of a page that shows an edit, or the refined picture of the last edit."""
         scene, words, last = self.studio.scene, self.studio.words, self.session.last_edit
         is_edited = last is None or scene is not last.after
-        has_other_words = self.board.screen.shows_picture and words is not self._words
-        if has_other_words:
-            self._words = words
-        if is_edited or has_other_words:
+        has_other_words = words is not self._words
+        self._words = words
+        if is_edited or (has_other_words and not has_turned):
             before = scene if last is None else last.after if is_edited else last.before
             count = sent.entry_words + (sent.base_words if has_other_words else 0)
             self.session.last_edit = LastEdit(before, scene, sent.words[:count], len(sent.words) - count)

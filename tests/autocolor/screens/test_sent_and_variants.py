@@ -163,24 +163,6 @@ def test_turning_to_another_screen_is_no_edit(recorded: Recorded) -> None:
     assert viewer.session.last_edit is last
 
 
-def test_words_are_told_when_they_go_as_those_of_a_view_that_was_turned_on_another_screen(
-    recorded: Recorded,
-) -> None:
-    viewer = recorded.viewer
-    for screen in ("light and view", "sent"):
-        viewer.session.turn_to(screen)
-        viewer.tell("")
-        recorded.edit(EDITS["view"](viewer.studio.scene))
-        edit = last_edit(viewer)
-        assert "WI" not in names_in(edit.words)
-        viewer.session.turn_to("picture")
-        viewer.tell("")
-        shown = last_edit(viewer)
-        assert (shown.before, shown.after) == (edit.before, edit.after)
-        assert "WI" in names_in(shown.words)
-        recorded.edit(SCENE)
-
-
 def test_a_coarse_picture_is_followed_by_the_words_of_its_refined_picture(
     recorded: Recorded, monkeypatch: pytest.MonkeyPatch
 ) -> None:
