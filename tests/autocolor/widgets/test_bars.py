@@ -85,7 +85,7 @@ def test_the_ends_of_a_bar_are_those_of_its_range_even_between_steps() -> None:
     assert Bar("bar", area=ROW, value=1.0, low=1.0, high=1.0).share == 0.0
     assert rounded_to(0.123, 0) == 0.123
     typed = Bar("position x", area=ROW, value=-0.525909, step=0.1)
-    assert (typed.number, typed.entry.value) == ("-0.53", "-0.525909")
+    assert (typed.number, typed.typed.value) == ("-0.53", "-0.525909")
 
 
 def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
@@ -97,10 +97,10 @@ def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
     assert number.value == 1.0
     bar.nudge(-1)
     assert number.value == 0.4
-    bar.entry.take("0,75")
+    bar.typed.take("0,75")
     assert number.value == 0.75
     with pytest.raises(UsageError) as refusal:
-        bar.entry.take("much")
+        bar.typed.take("much")
     assert str(refusal.value) == "bar must be a number, not 'much'; type one, such as 1.5"
     assert number.value == 0.75
 
