@@ -475,7 +475,7 @@ class Board:
         """Take a key that is typed into the widget under the pointer, or moves in the menu."""
         row = self._lit_widget()
         if isinstance(row, Bar) and not row.why_not and typed and typed in NUMBERS:
-            self.typing.begin(row.entry, typed)
+            self.typing.begin(row.typed, typed)
             return True
         if not self.menu.has_focus:
             return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from autocolor.screens.pages import Pages, TextRow
+from autocolor.screens.pages import PageRow, Pages
 from autocolor.widgets.items import LIGHT_GRAY, ORANGE
 
 LIMITS: Final = (
@@ -23,6 +23,6 @@ class HelpScreen(Pages):
     help = "What keys and the mouse do"
     heading = "AUTOCOLOR"
 
-    def rows(self) -> Sequence[TextRow]:
-        keys = [TextRow(key, ORANGE, does) for key, does in self.session.keys]
-        return [*keys, TextRow(), *(TextRow(line, LIGHT_GRAY) for line in LIMITS)]
+    def rows(self) -> Sequence[PageRow]:
+        keys = [PageRow(key, ORANGE, does) for key, does in self.session.keys]
+        return [*keys, PageRow(), *(PageRow(line, LIGHT_GRAY) for line in LIMITS)]

@@ -2,26 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
 from functools import partial
 
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import HISTORY, PICTURE, Session
 from autocolor.screens.steps import redo, switch_comparing, switch_split, undo
 from autocolor.widgets.menu import STRIP
-from autocolor.widgets.widget import Button, Gap, Pair, PanelButton, Widget, Word
-
-
-@dataclass(frozen=True)
-class UndoRow(Pair):
-    """Undo, the list of steps and redo in one row; a word is dim while it does nothing."""
-
-    buttons: Sequence[Word] = ()
-
-    @property
-    def words(self) -> Sequence[Word]:
-        return self.buttons
+from autocolor.widgets.widget import Button, Cell, Gap, Pair, PanelButton, Widget
 
 
 def strip_of(session: Session, screens: Iterable[Screen]) -> list[Widget]:
@@ -46,16 +34,16 @@ def last_rows(session: Session, screen: Screen) -> list[Widget]:
     history = session.studio.history
     can_undo, can_redo = bool(history.to_undo), bool(history.to_redo)
     can_go = can_undo or can_redo
-    row = UndoRow(
+    row = Pair(
         " ",
         "Undo the last step, or redo it; between, the list of all steps.",
         "" if can_go else "there is no step to undo",
         buttons=(
-            Word("undo", partial(undo, session), can_undo),
-            Word(
+            Cell("undo", partial(undo, session), can_undo),
+            Cell(
                 "steps", partial(session.turn_to, PICTURE if session.screen == HISTORY else HISTORY), can_go
             ),
-            Word("redo", partial(redo, session), can_redo),
+            Cell("redo", partial(redo, session), can_redo),
         ),
     )
     return [Gap("undo gap"), row, *([compare_row(session)] if screen.shows_picture else [])]

@@ -23,7 +23,7 @@ ROWS_A_PAGE: Final = (HEIGHT - MESSAGE_LINES - TOP) // STEP
 CHARACTERS: Final = (WIDTH - 2 * LEFT) // CHARACTER
 
 
-class TextRow(NamedTuple):
+class PageRow(NamedTuple):
     """A row: its text, the word of its letters, and a white text from the middle on."""
 
     text: str = ""
@@ -46,7 +46,7 @@ class Pages(Screen):
     def enter(self) -> None:
         self._page = 0
 
-    def rows(self) -> Sequence[TextRow]:
+    def rows(self) -> Sequence[PageRow]:
         """The rows of all pages."""
         raise NotImplementedError
 

@@ -16,7 +16,7 @@ from typing import Final
 from autocolor.journal.description import describe
 from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import MOST_DESCRIBED
-from autocolor.screens.pages import CHARACTERS, Pages, TextRow
+from autocolor.screens.pages import CHARACTERS, PageRow, Pages
 from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import SENT, LastEdit, Session
 from autocolor.sending import configuration_of
@@ -41,9 +41,9 @@ class SentScreen(Pages):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._rows: Cached[Sequence[TextRow]] = Cached()
+        self._rows: Cached[Sequence[PageRow]] = Cached()
 
-    def rows(self) -> Sequence[TextRow]:
+    def rows(self) -> Sequence[PageRow]:
         last = self.session.last_edit
         if last is None:
             return ()
@@ -55,17 +55,17 @@ class SentScreen(Pages):
         return replace(super().build(around), idle=lambda: shown is not self.session.last_edit)
 
 
-def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[TextRow]:
+def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[PageRow]:
     """The rows of an edit: its description, numbers of words, shares of instructions, and the listing."""
     listed = list(items([edit.words.astype("<u2").tobytes()], configuration))
     what = describe(edit.before, edit.after, MOST_DESCRIBED) or "no change"
     return [
-        TextRow("the scene was opened" if edit.before is edit.after else what, YELLOW),
-        TextRow(f"{counted(len(edit.words), 'word')}: {_effect(listed, configuration)}"),
-        TextRow(f"and {counted(edit.other_words, 'word')} for menus, panels and other parts of the screen"),
-        TextRow(),
+        PageRow("the scene was opened" if edit.before is edit.after else what, YELLOW),
+        PageRow(f"{counted(len(edit.words), 'word')}: {_effect(listed, configuration)}"),
+        PageRow(f"and {counted(edit.other_words, 'word')} for menus, panels and other parts of the screen"),
+        PageRow(),
         *_shares(listed, len(edit.words)),
-        TextRow(),
+        PageRow(),
         *[row for item in listed for row in _listing(item)],
     ]
 
@@ -91,7 +91,7 @@ def _effect(listed: Sequence[ListingItem], configuration: Configuration) -> str:
     return f"{counted(entries, 'entry')} of the lookup table, and {words} of the picture"
 
 
-def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[TextRow]:
+def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[PageRow]:
     """A row for each kind of instruction: its number, its words, and their share, the largest share first."""
     lengths: dict[tuple[str, str], list[int]] = {}
     for item in listed:
@@ -100,17 +100,17 @@ def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[TextRow]:
             lengths.setdefault((form.name, form.meaning), []).append(len(item.words))
     for (name, meaning), each in sorted(lengths.items(), key=lambda row: -sum(row[1])):
         count, length = counted(len(each), "instruction"), counted(sum(each), "word")
-        yield TextRow(f"{name:4} {count:>16} {length:>14} {sum(each) / words:>6.1%}  {meaning}")
+        yield PageRow(f"{name:4} {count:>16} {length:>14} {sum(each) / words:>6.1%}  {meaning}")
 
 
-def _listing(item: ListingItem) -> Iterator[TextRow]:
+def _listing(item: ListingItem) -> Iterator[PageRow]:
     """The lines of an instruction; of long data, the first lines and the number of words left out."""
     lines = item.lines()
     for number, line in enumerate(islice(lines, MOST_LINES)):
         for part in wrap(line, CHARACTERS, subsequent_indent=INDENT, break_on_hyphens=False):
-            yield TextRow(part, LIGHT_GRAY if number else WHITE)
+            yield PageRow(part, LIGHT_GRAY if number else WHITE)
     following = next(lines, None)
     if following is not None:
         place = int(following.partition(":")[0], 16)
         left_out = item.place + len(item.words) - place
-        yield TextRow(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", LIGHT_GRAY)
+        yield PageRow(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", LIGHT_GRAY)

@@ -77,7 +77,7 @@ class Bar(Widget):
     """The color of the bar."""
 
     @property
-    def entry(self) -> Entry:
+    def typed(self) -> Entry:
         """The number as a text that can be typed over."""
         return Entry(self.label, value="" if self.value is None else f"{self.value:.9g}", take=self._take)
 

@@ -359,7 +359,7 @@ class Entry(Button):
     is_proposed: bool = False
 
 
-class Word(NamedTuple):
+class Cell(NamedTuple):
     """A button of a row with several: its text, and whether a pick on it does anything; else it is dim."""
 
     text: str
@@ -370,50 +370,57 @@ class Word(NamedTuple):
 
 @dataclass(frozen=True)
 class Pair(Widget):
-    """Two buttons in one row: `label` names the left one, `other` the right one. Keys pick them by steps."""
+    """Two buttons in one row: `label` names the left one, `other` the right one. Keys pick them by steps.
+
+    A row of more buttons has them in `buttons`.
+    """
 
     run: Callable[[], object] = lambda: None
     other: str = ""
     run_other: Callable[[], object] = lambda: None
     is_chosen: bool = False
     """Whether the left button is chosen."""
+    buttons: Sequence[Cell] = ()
 
     @property
-    def words(self) -> Sequence[Word]:
+    def cells(self) -> Sequence[Cell]:
         """The buttons, from the left."""
         is_on = not self.why_not
-        return Word(self.label, self.run, is_on, self.is_chosen), Word(self.other, self.run_other, is_on)
+        return self.buttons or (
+            Cell(self.label, self.run, is_on, self.is_chosen),
+            Cell(self.other, self.run_other, is_on),
+        )
 
     @property
     def _edges(self) -> list[int]:
-        """Where each button begins: at equal distances, or after the word before if that is longer."""
-        edges, words = [self.area.left], self.words
-        for number, before in enumerate(words[:-1], start=1):
+        """Where each button begins: at equal distances, or after the text before if that is longer."""
+        edges, cells = [self.area.left], self.cells
+        for number, before in enumerate(cells[:-1], start=1):
             least = edges[-1] + MARGIN + CHARACTER * len(before.text) + MARGIN - 2
-            edges.append(max(least, self.area.left + number * (self.area.width - MARGIN) // len(words)))
+            edges.append(max(least, self.area.left + number * (self.area.width - MARGIN) // len(cells)))
         return edges
 
     def items(self, lit: bool) -> list[Item]:
         ground, edges = SLATE if lit else NIGHT, self._edges
         items = [filled(self.area, ground)]
-        for word, left, end in zip(self.words, edges, [*edges[1:], self.area.right + 1], strict=True):
+        for cell, left, end in zip(self.cells, edges, [*edges[1:], self.area.right + 1], strict=True):
             area = Area(left, self.area.top, end - 1, self.area.bottom)
             line = Area(left, area.top + TEXT_DOWN, left, area.top + TEXT_DOWN + CHARACTER_LINES - 1)
-            if word.is_chosen:
+            if cell.is_chosen:
                 items.append(filled(area, WHITE))
             elif left > self.area.left:
                 items.append(filled(line, GRAY if lit else SLATE))
-            ink = BLACK if word.is_chosen else WHITE if word.is_on else GRAY
-            back = WHITE if word.is_chosen else ground
-            items.append(text(word.text, left + MARGIN, line.top, ink, back))
+            ink = BLACK if cell.is_chosen else WHITE if cell.is_on else GRAY
+            back = WHITE if cell.is_chosen else ground
+            items.append(text(cell.text, left + MARGIN, line.top, ink, back))
         return items
 
     def pick(self, place: Place) -> object:
         number = sum(place.element >= edge for edge in self._edges[1:])
-        return self.words[number].run()
+        return self.cells[number].run()
 
     def nudge(self, steps: float) -> object:
-        return self.words[-1 if steps > 0 else 0].run()
+        return self.cells[-1 if steps > 0 else 0].run()
 
 
 STEM_LETTERS: Final = 3

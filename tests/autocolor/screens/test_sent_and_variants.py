@@ -17,7 +17,7 @@ from autocolor.images import display_image
 from autocolor.mapping.palette import thumbnail
 from autocolor.screens.gallery import ELEMENTS, FRAME, LINES, Tile
 from autocolor.screens.message_line import MESSAGE
-from autocolor.screens.pages import CHARACTERS, LEFT, TOP, TextRow
+from autocolor.screens.pages import CHARACTERS, LEFT, TOP, PageRow
 from autocolor.screens.sent_screen import rows_of_edit
 from autocolor.screens.session import LastEdit
 from autocolor.screens.variants_screen import ON_PAGE, PLACES
@@ -88,7 +88,7 @@ def names_in(words: Words) -> list[str]:
     return [instruction.format.name for instruction in listed if instruction is not None]
 
 
-def listing_of(words: Words) -> list[TextRow]:
+def listing_of(words: Words) -> list[PageRow]:
     """The rows below the table of shares."""
     rows = rows_of_edit(LastEdit(SCENE, SCENE, words, 0), GMR_9300)
     return rows[max(number for number, row in enumerate(rows) if not row.text) + 1 :]
@@ -160,24 +160,6 @@ def test_turning_to_another_screen_is_no_edit(recorded: Recorded) -> None:
         viewer.tell("")
         viewer.on_tick()
     assert viewer.session.last_edit is last
-
-
-def test_words_are_told_when_they_go_as_those_of_a_view_that_was_turned_on_another_screen(
-    recorded: Recorded,
-) -> None:
-    viewer = recorded.viewer
-    for screen in ("light and view", "sent"):
-        viewer.session.turn_to(screen)
-        viewer.tell("")
-        recorded.edit(EDITS["view"](viewer.studio.scene))
-        edit = last_edit(viewer)
-        assert "WI" not in names_in(edit.words)
-        viewer.session.turn_to("picture")
-        viewer.tell("")
-        shown = last_edit(viewer)
-        assert (shown.before, shown.after) == (edit.before, edit.after)
-        assert "WI" in names_in(shown.words)
-        recorded.edit(SCENE)
 
 
 def test_a_coarse_picture_is_followed_by_the_words_of_its_refined_picture(

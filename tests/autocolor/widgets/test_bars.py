@@ -81,13 +81,13 @@ def test_the_ends_of_a_bar_are_those_of_its_range_even_between_steps() -> None:
 def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
     found: list[float] = []
     bar = Bar("bar", area=ROW, value=0.525909, low=0.0, high=1.0, step=0.1, put=found.append)
-    assert (bar.number, bar.entry.value) == ("0.53", "0.525909")
+    assert (bar.number, bar.typed.value) == ("0.53", "0.525909")
     bar.pick(Place(ROW.left, 40))
     bar.drag(ANYWHERE, ANYWHERE, Place(ROW.right, 40))
     bar.nudge(-1)
-    bar.entry.take("0,75")
+    bar.typed.take("0,75")
     with pytest.raises(UsageError) as refusal:
-        bar.entry.take("much")
+        bar.typed.take("much")
     assert str(refusal.value) == "bar must be a number, not 'much'; type one, such as 1.5"
     assert found == [0.0, 1.0, 0.4, 0.75]
 
