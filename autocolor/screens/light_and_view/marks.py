@@ -152,15 +152,15 @@ def points_in(
         end = start._replace(what=DIRECTION if light.aim is None else AIM)
         arrows.append((start, light.position, end, arrow_end(views, light), light))
     points: tuple[list[MarkedPoint], list[MarkedPoint]] = [], []
-    for number, (start, point, end, end_point, shining) in enumerate(arrows):
+    for number, (start, point, end, end_point, owner) in enumerate(arrows):
         group = points[start.light == chosen]
-        if shining is not None and start.light == chosen:
-            group += _flaps_in(shining, views, side)
+        if owner is not None and start.light == chosen:
+            group += _flaps_in(owner, views, side)
         if end_point is not None:
             at = views.position(side, end_point)
-            group.append(MarkedPoint(end, end_point, PointMark(at, at), None, shining, number))
+            group.append(MarkedPoint(end, end_point, PointMark(at, at), None, owner, number))
         mark = views.mark(side, point, end_point)
-        group.append(MarkedPoint(start, point, mark, end_point, shining, number))
+        group.append(MarkedPoint(start, point, mark, end_point, owner, number))
     return tuple(points[False]), tuple(points[True])
 
 
@@ -421,7 +421,7 @@ def point_items(
                 layers[shaft].append(arrow(each.mark.at, views.position(side, each.end)))
                 if light is not None:
                     layers[cone].append(cone_outline(views, side, light, each.end))
-    return [item for word, parts in layers.items() for item in drawn_item(parts, word, side)]
+    return tuple(item for word, parts in layers.items() for item in drawn_item(parts, word, side))
 
 
 @lru_cache(maxsize=64)
@@ -432,10 +432,10 @@ def edge_items(views: OrthographicViews, side: ViewSide, view: View, target: Vec
     return drawn_item([rays, joined([*corners, corners[0]])], SLATE, side)
 
 
-def drawn_item(parts: Sequence[Floats], word: int, side: ViewSide) -> list[Item]:
+def drawn_item(parts: Sequence[Floats], word: int, side: ViewSide) -> Sequence[Item]:
     """The item of all strokes of one word, clipped at the area of a view; none if there are no strokes."""
     strokes = clipped(together(parts), side.area)
     if not len(strokes):
-        return []
+        return ()
     stream = instructions.write_segments(rounded(strokes), word).tobytes()
-    return [Item(area_of(strokes.reshape(-1, 2)), stream)]
+    return (Item(area_of(strokes.reshape(-1, 2)), stream),)

@@ -272,15 +272,15 @@ def moved(words: Words, side: ViewSide, before: OrthographicViews, views: Orthog
     """
     if before == views:
         return words
-    moved = np.pad(words, (0, 1), constant_values=NIGHT)
+    shifted = np.pad(words, (0, 1), constant_values=NIGHT)
     for direction, (count, axis, sign) in enumerate(
         zip(words.shape, (side.up, side.right), (-1, 1), strict=True)
     ):
         middle, shift = (count - 1) / 2, sign * (views.center[axis] - before.center[axis]) * before.scale
         place = (np.arange(count) - middle) * (before.scale / views.scale) + shift + middle
         # The pixels from beyond the area have the last place.
-        moved = moved.take(np.rint(place.clip(-1, count)).astype(np.intp) % (count + 1), axis=direction)
-    return moved
+        shifted = shifted.take(np.rint(place.clip(-1, count)).astype(np.intp) % (count + 1), axis=direction)
+    return shifted
 
 
 class ObjectLines:

@@ -107,17 +107,15 @@ def test_fitted_points_are_within_all_areas_with_space_left_on_all_sides(
         assert (positions <= np.array([side.area.right, side.area.bottom]) - 16).all()
 
 
-def test_the_longest_extent_fills_its_view() -> None:
-    assert fitted_views(cube().coordinates).scale == pytest.approx(FILLED * 219)
-    assert fitted_views(cube().coordinates * (4, 1, 1)).scale == pytest.approx(FILLED * 247 / 4)
-    assert fitted_views(cube().coordinates * (4, 1, 1)).center == (2, 0.5, 0.5)
-
-
-def test_a_single_point_and_none_have_space_around_them() -> None:
-    views = fitted_views(np.array([[5.0, 6.0, 7.0]]))
-    assert views.center == (5, 6, 7)
-    assert views.scale == pytest.approx(FILLED * 219)
-    assert fitted_views(np.empty((0, 3))) == OrthographicViews((0.0, 0.0, 0.0), views.scale)
+def test_the_longest_extent_fills_its_view_and_a_single_point_has_space_around_it() -> None:
+    for points, center, scale in (
+        (cube().coordinates, (0.5, 0.5, 0.5), FILLED * 219),
+        (cube().coordinates * (4, 1, 1), (2, 0.5, 0.5), FILLED * 247 / 4),
+        (np.array([[5.0, 6.0, 7.0]]), (5, 6, 7), FILLED * 219),
+        (np.empty((0, 3)), (0, 0, 0), FILLED * 219),
+    ):
+        assert fitted_views(points).center == center
+        assert fitted_views(points).scale == pytest.approx(scale)
 
 
 def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next() -> None:

@@ -72,19 +72,6 @@ def test_the_legend_is_picked_and_placed_but_not_that_of_another_state(tmp_path:
     assert not session.news.is_warning
 
 
-def test_what_is_pointed_at_is_named_as_soon_as_the_picture_is_back(hand: Hand) -> None:
-    viewer = hand.viewer
-    viewer.session.turn_to("help")
-    # The first time the screen comes, and tells the way back; then that is taken away.
-    viewer.tell("")
-    viewer.tell("")
-    hand.move(*MIDDLE)
-    viewer.session.turn_to("reflectance")
-    viewer.on_key("a key that does nothing")
-    assert viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
-    assert hand.is_drawn_whole()
-
-
 def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> None:
     scene = hand.scene
     hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=8.0)))
