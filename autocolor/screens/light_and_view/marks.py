@@ -407,10 +407,13 @@ def inks_of(point: MarkedPoint, is_chosen: bool) -> tuple[int, int, int]:
 def point_items(
     views: OrthographicViews, points: tuple[MarkedPoint, ...], are_chosen: bool
 ) -> Sequence[Item]:
-    """The items of the eye, of lights and of flaps; during a drag, most points stay the same."""
+    """The items of the eye, lights and flaps of one view; during a drag, most points stay the same."""
+    if not points:
+        return ()
+    side = points[0].movable.side
     layers: dict[int, list[Floats]] = {word: [] for word in (GRAY, LIGHT_GRAY, BLUE, WHITE, YELLOW)}
     for each in points:
-        what, side, light = each.movable.what, each.movable.side, each.light
+        what, light = each.movable.what, each.light
         sign, shaft, cone = inks_of(each, are_chosen)
         if what == FLAP:
             is_on = light is not None and getattr(light.flaps, each.movable.axis).on
