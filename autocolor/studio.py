@@ -39,7 +39,8 @@ from autocolor.explanation.explain import Explanation, explain
 from autocolor.files.stamps import stamp_of
 from autocolor.images import display_image, save_image
 from autocolor.journal.history import History, Move, Show, is_picture
-from autocolor.journal.places import NO_STAMP, Source, opened
+from autocolor.journal.places import NO_STAMP, Source, opened, resolved
+from autocolor.journal.timeline import have_one_look
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, words_by_line
@@ -345,6 +346,10 @@ class Studio(Suggesting):
         """Return to the view that `view_back` left; returns False if there is none."""
         return self._move("view_forward")
 
+    def go_on(self, history: History) -> None:
+        """Go on with another session, such as the history of a journal; this session stays as it is."""
+        self._show_scene(history.scene, lambda: setattr(self, "_history", history))
+
     def take_back(self) -> None:
         """Take the last edit and its gesture back, as if they had not been made."""
         before = self._history.before_gesture
@@ -399,13 +404,20 @@ class Studio(Suggesting):
     ) -> None:
         """Read a scene (see `read_scene`) and make it the current one, by one step to undo.
 
-        Undo also brings back the files to which `save_session` saves. The script of a session gives the
-        `tables` that the scene had, because the file may have been saved over since, and the `checksum` of
-        the scene. Raises InputError if the scene has another checksum.
+        If it is the file of the current scene and still has its look, there is no step: the view alone
+        becomes that of the file. Undo also brings back the files to which `save_session` saves. The script of
+        a session gives the `tables` that the scene had, because the file may have been saved over since, and
+        the `checksum` of the scene. Raises InputError if the scene has another checksum.
         """
         source = Source(fspath(path), up, surfaces, scale)
+        before = self._history.place.source
+        is_same_file = before is not None and resolved(before) == resolved(source)
+        known = self.scene if is_same_file else None, self._history.on_disk.scene_of(source)
         with allowing(self._limit):
-            scene = opened(source, tables, checksum, (self._history.on_disk.scene_of(source),))
+            scene = opened(source, tables, checksum, known)
+        if is_same_file and have_one_look(scene.scene, self.scene):
+            self.edit(self.scene.replace(view=scene.scene.view))
+            return
         self._show_scene(scene.scene, lambda: self._history.open(scene, source))
 
     @property

@@ -87,7 +87,7 @@ def write_scene(
             if data is None:
                 raise OutputError(
                     f"{target}: a scene file must have at most {LARGEST_TEXT:,} bytes and give the same"
-                    " scene, and this one would not; save the scene with its picture instead"
+                    " scene; save it with its picture instead"
                 )
             check()
             write_atomically(target, data, overwrite=overwrite)

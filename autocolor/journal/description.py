@@ -183,8 +183,10 @@ def _changes_of_value(
     if isinstance(kind, Nested):
         if other is None:
             yield ColumnChange(f"no {label}")
-        else:
-            yield from _changes(one, other, path if kind.inline else f"{label} ")
+            return
+        inner = list(_changes(one, other, path if kind.inline else f"{label} "))
+        # A new row may have the defaults in all columns.
+        yield from inner or [ColumnChange(f"{label} on")]
     elif isinstance(kind, OneRowOf):
         is_same_class = type(one) is type(other)
         if not is_same_class:

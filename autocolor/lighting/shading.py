@@ -225,8 +225,7 @@ def light_mix(
             strongest = max(peaks, key=lambda name: peaks[name])
             raise InputError(
                 f"surface {surface.name!r} under light {strongest!r}: intensities must stay below"
-                f" {LARGEST_SINGLE:.3g}, not reach {total:g}; lower the light's intensity or the surface's"
-                " diffuse and specular"
+                f" {LARGEST_SINGLE:.3g}, not reach {total:g}; lower the light's intensity"
             )
     all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
     scale = max([ambient, *all_strengths]) or 1.0

@@ -202,11 +202,11 @@ def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Ban
     shades = scalar.shades or max(1, min(MOST_SHADES, useful // total))
     if total * shades > room:
         first, *more = bands
-        raise InputError(_refusal(scalar, first, len(more), total, shades, room))
+        raise InputError(_refusal(first, len(more), total, shades, room))
     return shades
 
 
-def _refusal(scalar: Scalar, name: str, others: int, total: int, shades: int, room: int) -> str:
+def _refusal(name: str, others: int, total: int, shades: int, room: int) -> str:
     """The message about bands and shades for which there are too few words.
 
     `total` is the number of bands of all surfaces that the scalar colors, `others` the number of these
@@ -217,9 +217,9 @@ def _refusal(scalar: Scalar, name: str, others: int, total: int, shades: int, ro
     remedy = (
         f"choose at most {most} shade{'s' * (most > 1)}, or fewer bands"
         if most
-        else f"even one shade of each needs {total}; choose fewer bands, or let it color fewer surfaces"
+        else "choose fewer bands, or color fewer surfaces"
     )
     return (
-        f"{label}: the bands of scalar {scalar.name!r} times their shades must be at most the {room} words"
-        f" that are left for them, not {total} x {shades} = {total * shades}; {remedy}"
+        f"{label}: bands times shades must be at most {room}, the words that are left, not {total} x {shades}"
+        f" = {total * shades}; {remedy}"
     )

@@ -98,9 +98,8 @@ def level_ranges(
     if asked > room or (sharing and (room - asked) // len(sharing) < FEWEST_LEVELS):
         largest = max(levels_of, key=lambda name: levels_of[name] or 0)
         raise InputError(
-            f"surface {largest!r}: the levels of all surfaces must be at most {room}, with {FEWEST_LEVELS}"
-            f" for every surface without a number, not {asked} and {len(sharing)} such surfaces; ask for"
-            " fewer levels"
+            f"surface {largest!r}: all levels must be at most {room}, {FEWEST_LEVELS} for each surface"
+            f" without a number, not {asked} and {len(sharing)} such; ask for fewer levels"
         )
     if division == "equal":
         shares = [(room - asked) // len(sharing) for _ in sharing]

@@ -19,7 +19,14 @@ from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
 from autocolor.screens.main_menu import last_rows, strip_of
 from autocolor.screens.menu_state import MenuState
-from autocolor.screens.message_line import MESSAGE, MessagePart, TypingLine, message_items, offer_button
+from autocolor.screens.message_line import (
+    MESSAGE,
+    NUMBERS,
+    MessagePart,
+    TypingLine,
+    message_items,
+    offer_button,
+)
 from autocolor.screens.screen import Content, Handle, Sample, Screen, Surroundings, surface_at
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
@@ -377,7 +384,7 @@ class Board:
             self.menu.open_or_close(widget)
             if by_key and self.layout.listed is not None:
                 self._light(self.layout.listed.chosen)
-        elif widget.typed is not None and not isinstance(widget, Bar):
+        elif isinstance(widget, Entry):
             self.typing.begin(widget)
         else:
             widget.pick(place)
@@ -467,8 +474,8 @@ class Board:
     def key(self, name: str, typed: str) -> bool:
         """Take a key that is typed into the widget under the pointer, or moves in the menu."""
         row = self._lit_widget()
-        if row is not None and row.typed is not None and self.typing.would_begin(row, typed):
-            self.typing.begin(row, typed)
+        if isinstance(row, Bar) and not row.why_not and typed and typed in NUMBERS:
+            self.typing.begin(row.typed, typed)
             return True
         if not self.menu.has_focus:
             return False

@@ -13,7 +13,7 @@ from autocolor.errors import UsageError
 from autocolor.journal.description import describe
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.scene import Scene
-from autocolor.scene.view import View
+from autocolor.screens.cached import Cached
 from autocolor.studio import Studio
 
 MOST_DESCRIBED: Final = 70
@@ -37,10 +37,10 @@ class Comparing:
     def __init__(self, studio: Studio) -> None:
         self._studio = studio
         self._chosen: NamedScene | None = None
-        self._seen: tuple[Scene, View, NamedScene] | None = None
-        """A scene, the present view, and that scene in this view."""
-        self._cached: tuple[Scene, Scene, DisplayImage] | None = None
-        """The present scene, the scene that it was last compared with, and the image of that other scene."""
+        self._in_view: Cached[Scene] = Cached()
+        """The other scene in the present view."""
+        self._image: Cached[DisplayImage] = Cached()
+        """The image of the other scene, computed once for a pair of scenes."""
         self._shown: DisplayImage | None = None
 
     @property
@@ -53,10 +53,8 @@ class Comparing:
         other = self._chosen or (NamedScene(BEFORE, steps[-1]) if steps else None)
         if other is None or other.scene.mesh is not present.mesh or other.scene.view == present.view:
             return other
-        if self._seen is None or self._seen[:2] != (other.scene, present.view):
-            seen = other._replace(scene=other.scene.replace(view=present.view))
-            self._seen = other.scene, present.view, seen
-        return self._seen[2]
+        name, scene, view = *other, present.view
+        return NamedScene(name, self._in_view.of(lambda: scene.replace(view=view), scene, view))
 
     def choose(self, other: NamedScene | None) -> None:
         """Choose the scene to compare with from now on; None for the state before the last step."""
@@ -96,8 +94,7 @@ class Comparing:
             raise UsageError(
                 "to compare, there must be a step to undo or a kept variant; edit something first"
             )
-        if self._shown is None:
-            self._shown = self._image_of(other.scene)
+        self._shown = self._image_of(other.scene)
         return other.name
 
     def end(self) -> bool:
@@ -106,9 +103,5 @@ class Comparing:
         return was_on
 
     def _image_of(self, other: Scene) -> DisplayImage:
-        """The image of another scene, computed once for a pair of scenes."""
-        studio = self._studio
-        studio.refine()
-        if self._cached is None or self._cached[0] is not studio.scene or self._cached[1] is not other:
-            self._cached = studio.scene, other, studio.image_of(other)
-        return self._cached[2]
+        self._studio.refine()
+        return self._image.of(lambda: self._studio.image_of(other), self._studio.scene, other)

@@ -55,39 +55,32 @@ class Mouse:
         """Forget the button that is down."""
         self._pressed, self._drags = None, False
 
-    def gestures(
-        self,
-        element: int,
-        line: int,
-        action: str,
-        button: int = 0,
-        steps: int = 1,
-        shift: bool = False,
-        control: bool = False,
-    ) -> list[Gesture]:
-        """The gestures of an action: "move", "press", "release", "wheel up" or "wheel down"."""
-        place = Gesture("hover", element, line, button, 0.0, shift, control)
+    def gestures(self, action: str, place: Gesture) -> list[Gesture]:
+        """The gestures of an action at a place: "move", "press", "release", "wheel up" or "wheel down".
+
+        `place` is a hover with the button and the modifiers, and with the steps of a wheel as they come.
+        """
         pressed = self._pressed
         if action.startswith("wheel"):
-            return [place._replace(kind="wheel", steps=float(steps if action == "wheel up" else -steps))]
+            return [place._replace(kind="wheel", steps=place.steps if action == "wheel up" else -place.steps)]
         if action == "press":
             if pressed is None:
                 self._pressed, self._drags = place, False
             return []
         if action == "release":
-            if pressed is None or button != pressed.button:
+            if pressed is None or place.button != pressed.button:
                 return []
             drags = self._drags
             self.forget()
             kind = "drop" if drags else "pick"
             # The other buttons have no clicks.
-            return [place._replace(kind=kind)] if drags or button == LEFT else []
+            return [place._replace(kind=kind)] if drags or place.button == LEFT else []
         if pressed is None:
             return [place]
         moved = place._replace(kind="drag", button=pressed.button)
         if self._drags:
             return [moved]
-        if max(abs(element - pressed.element), abs(line - pressed.line)) <= SLOP:
+        if max(abs(place.element - pressed.element), abs(place.line - pressed.line)) <= SLOP:
             return []
         self._drags = True
         return [pressed._replace(kind="grab"), moved]
@@ -127,16 +120,8 @@ class Chord:
 
     def __str__(self) -> str:
         modifiers = ["Ctrl"] * self.control + ["Shift"] * self.shift + ["Alt"] * self.alt
-        names = {
-            "escape": "Esc",
-            "up": "Up",
-            "down": "Down",
-            "left": "Left",
-            "right": "Right",
-            "space": "Space",
-            "tab": "Tab",
-        }
-        return "+".join([*modifiers, names.get(self.name, self.name.upper())])
+        name = "Esc" if self.name == "escape" else self.name.capitalize()
+        return "+".join([*modifiers, name])
 
 
 @dataclass(frozen=True)

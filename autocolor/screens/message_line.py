@@ -10,7 +10,6 @@ from textwrap import wrap
 from typing import Final, NamedTuple
 
 from autocolor.screens.session import Offer, Session
-from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER,
@@ -23,7 +22,7 @@ from autocolor.widgets.items import (
     text,
 )
 from autocolor.widgets.menu import MESSAGE_CHARACTERS, MESSAGE_LINES
-from autocolor.widgets.widget import MARGIN, PanelButton, Typed, Widget
+from autocolor.widgets.widget import MARGIN, Entry, PanelButton, Widget
 
 MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
 LINE_STEP: Final = 12
@@ -50,19 +49,14 @@ def message_items(parts: Sequence[MessagePart], end: int = WIDTH) -> list[Item]:
     is_short = len(parts) == 1 and len(parts[0].text) <= MESSAGE_CHARACTERS
     most = MESSAGE_CHARACTERS if is_short else (end - 16) // CHARACTER
     lines = [line for part in parts for line in lines_of_message(part, most)]
-    top = MESSAGE.top - LINE_STEP * (len(lines) - 1)
+    first = MESSAGE.top - LINE_STEP * (len(lines) - 1)
     items = [filled(MESSAGE, BLACK)]
-    if top < MESSAGE.top:
-        items.append(filled(Area(0, top, end - 1, MESSAGE.top - 1), BLACK))
-    for line, ink, selected in lines:
-        left, right = line, ""
-        if selected is not None:
-            left, right = line[:selected], line[selected:]
-        if left:
-            items.append(text(left, 8, top + 3, ink, BLACK))
-        if right:
-            items.append(text(right, 8 + CHARACTER * len(left), top + 3, BLACK, ink))
-        top += LINE_STEP
+    if len(lines) > 1:
+        items.append(filled(Area(0, first, end - 1, MESSAGE.top - 1), BLACK))
+    for number, (line, ink, selected) in enumerate(lines):
+        top, place = first + LINE_STEP * number + 3, len(line) if selected is None else selected
+        parts_of_line = (line[:place], 8, ink, BLACK), (line[place:], 8 + CHARACTER * place, BLACK, ink)
+        items += [text(part, left, top, word, ground) for part, left, word, ground in parts_of_line if part]
     return items
 
 
@@ -91,7 +85,7 @@ def offer_button(offer: Offer | None) -> Widget | None:
 
 
 NUMBERS: Final = "0123456789.-+"
-"""The characters that begin a number."""
+"""The characters that begin a number, and so begin typing over a bar."""
 
 
 class TypingLine:
@@ -99,15 +93,16 @@ class TypingLine:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._label = ""
-        self._text = ""
-        self._typed: Typed | None = None
+        self._entry: Entry | None = None
         self._is_fresh = False
+        """Whether the text is selected: the next character replaces it."""
+        self.text = ""
+        """The text that is being typed."""
 
     @property
     def is_on(self) -> bool:
         """Whether a text is being typed."""
-        return self._typed is not None
+        return self._entry is not None
 
     @property
     def is_by_letters(self) -> bool:
@@ -115,48 +110,37 @@ class TypingLine:
         return self.is_on and not self._session.has_keyboard
 
     @property
-    def text(self) -> str:
-        """The text that is being typed."""
-        return self._text
+    def shown(self) -> MessagePart:
+        """The text for the message line."""
+        label = f"{self._entry.label}: " if self._entry else ""
+        if self._is_fresh and self.text:
+            return MessagePart(label + self.text, YELLOW, len(label))
+        line = f"{label}{self.text}_"
+        return MessagePart(line, YELLOW, len(line))
+
+    def begin(self, entry: Entry, typed: str = "") -> None:
+        """Begin with a character, or with the entry's text, which the first character replaces."""
+        self._entry, self.text, self._is_fresh = entry, typed or entry.value, not typed
 
     def insert(self, text: str) -> None:
         """Append a text, or replace the selected text by it."""
-        self._text, self._is_fresh = (text if self._is_fresh else self._text + text), False
-
-    @property
-    def shown(self) -> MessagePart:
-        """The text for the message line. The next character replaces the part that is selected."""
-        selected = len(self._label) + 2
-        if self._is_fresh and self._text:
-            return MessagePart(f"{self._label}: {self._text}", YELLOW, selected)
-        return MessagePart(f"{self._label}: {self._text}_", YELLOW, selected + len(self._text) + 1)
-
-    def would_begin(self, widget: Widget, typed: str) -> bool:
-        """Whether typing a character over a widget begins to type into it."""
-        return isinstance(widget, Bar) and not widget.why_not and typed != "" and typed in NUMBERS
-
-    def begin(self, widget: Widget, typed: str = "") -> None:
-        """Begin with the widget's text, which the first character replaces."""
-        self._typed = widget.typed
-        self._label = widget.label
-        self._text = typed or (self._typed.text if self._typed is not None else "")
-        self._is_fresh = not typed
+        self.text, self._is_fresh = (text if self._is_fresh else self.text + text), False
 
     def end(self) -> None:
         """End typing without taking the text."""
-        self._typed = None
+        self._entry = None
 
     def take(self) -> None:
         """Take the text if it was changed or proposed. A refused text raises an error and stays, selected."""
-        typed = self._typed
-        if typed is not None and (typed.is_proposed or self._text != typed.text):
+        entry = self._entry
+        if entry is not None and (entry.is_proposed or self.text != entry.value):
             self._is_fresh = True
-            typed.take(self._text)
+            entry.take(self.text)
         self.end()
 
     def leave(self) -> None:
         """Take the text as `take` does, but give up a text that was proposed."""
-        if self._typed is not None and self._typed.is_proposed:
+        if self._entry is not None and self._entry.is_proposed:
             self.end()
         self.take()
 
@@ -167,7 +151,7 @@ class TypingLine:
         elif name in ("return", "enter", "tab"):
             self.take()
         elif name == "backspace":
-            self._text, self._is_fresh = ("" if self._is_fresh else self._text[:-1]), False
+            self.text, self._is_fresh = ("" if self._is_fresh else self.text[:-1]), False
         elif name in ("end", "right"):
             self._is_fresh = False
         elif typed and typed.isprintable():

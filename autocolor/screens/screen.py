@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, TypeVar
+from typing import ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
@@ -153,48 +153,3 @@ class Screen:
 
     def leave(self) -> None:
         """Clean up after being shown."""
-
-
-class Pages(Screen):
-    """A screen of text in pages: a click, the wheel, Space, Page Up and Page Down turn to another page."""
-
-    has_menu = False
-    shows_scene = False
-
-    def __init__(self, session: Session) -> None:
-        super().__init__(session)
-        self.page = 0
-        """The number of the page, which grows and falls without end; see `page_of`."""
-
-    def enter(self) -> None:
-        self.page = 0
-
-    def build(self, around: Surroundings) -> Content:
-        return Content(
-            items=self.items(),
-            pick=lambda gesture: self._turn(1),
-            wheel=lambda gesture: self._turn(1 if gesture.steps < 0 else -1),
-            key=lambda name, typed: self._turn({"space": 1, "page down": 1, "page up": -1}.get(name, 0)),
-        )
-
-    def items(self) -> Sequence[Item]:
-        """The items of the page."""
-        raise NotImplementedError
-
-    def _turn(self, pages: int) -> bool:
-        self.page += pages
-        return pages != 0
-
-
-AnyRow = TypeVar("AnyRow")
-
-
-def page_of(rows: Sequence[AnyRow], number: int, rows_a_page: int) -> tuple[Sequence[AnyRow], str]:
-    """The rows of a page, counted from 0, and how to turn it; the text is empty if all rows are on one page.
-
-    After the last page comes the first.
-    """
-    pages = max(1, -(-len(rows) // rows_a_page))
-    first = number % pages * rows_a_page
-    turn = f"page {number % pages + 1} of {pages}; a click, the wheel or Space: the next page"
-    return rows[first : first + rows_a_page], turn if pages > 1 else ""

@@ -7,48 +7,28 @@ counted.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import islice
 from textwrap import wrap
-from typing import Final, NamedTuple
+from typing import Final
 
 from autocolor.journal.description import describe
 from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import MOST_DESCRIBED
-from autocolor.screens.screen import Content, Pages, Surroundings, page_of
+from autocolor.screens.pages import CHARACTERS, PageRow, Pages
+from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import SENT, LastEdit, Session
 from autocolor.sending import configuration_of
-from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, WHITE, WIDTH, YELLOW, Item, text
+from autocolor.widgets.items import LIGHT_GRAY, WHITE, YELLOW
 from ramtek_emu import Configuration, EntryFormat
 from ramtek_emu.instruction_set.disassembler import ListingItem, items
-
-TITLE: Final = "LAST EDIT"
-LEFT: Final = 8
-MIDDLE: Final = 160
-TOP: Final = 50
-STEP: Final = 13
-"""The lines from row to row."""
-END: Final = 462
-ROWS_A_PAGE: Final = (END - TOP) // STEP
-CHARACTERS: Final = (WIDTH - 2 * LEFT) // CHARACTER
 
 MOST_LINES: Final = 12
 """Assumed: lines of the listing of one instruction; its further data are left out."""
 
-OTHERS: Final = "menus, panels and other parts of the screen"
-"""The things whose words are counted and not listed."""
-
 INDENT: Final = " " * 40
 """Before the rest of a line of the listing that is wider than the screen."""
-
-
-class ListingRow(NamedTuple):
-    """A row of the screen, and the word of its characters."""
-
-    text: str = ""
-    ink: int = WHITE
 
 
 class SentScreen(Pages):
@@ -57,46 +37,35 @@ class SentScreen(Pages):
     name = SENT
     title = "last edit"
     help = "The instructions that the last edit sent to the display"
+    heading = "LAST EDIT"
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._rows: Cached[Sequence[ListingRow]] = Cached()
-        self._shown: LastEdit | None = None
+        self._rows: Cached[Sequence[PageRow]] = Cached()
 
-    def items(self) -> Sequence[Item]:
-        """The title, and the rows of this page."""
-        last = self._shown = self.session.last_edit
-        rows: Sequence[ListingRow] = ()
-        if last is not None:
-            configuration = configuration_of(self.session.display)
-            rows = self._rows.of(lambda: rows_of_edit(last, configuration), last)
-        shown, turn = page_of(rows, self.page, ROWS_A_PAGE)
-        return [
-            text(TITLE, LEFT, 22, YELLOW, size=2),
-            *([text(turn, MIDDLE, 28, LIGHT_GRAY)] if turn else []),
-            *[
-                text(row.text, LEFT, TOP + STEP * number, row.ink)
-                for number, row in enumerate(shown)
-                if row.text
-            ],
-        ]
+    def rows(self) -> Sequence[PageRow]:
+        last = self.session.last_edit
+        if last is None:
+            return ()
+        return self._rows.of(lambda: rows_of_edit(last, configuration_of(self.session.display)), last)
 
     def build(self, around: Surroundings) -> Content:
         # An edit on this screen is listed once it has been sent.
-        return replace(super().build(around), idle=lambda: self._shown is not self.session.last_edit)
+        shown = self.session.last_edit
+        return replace(super().build(around), idle=lambda: shown is not self.session.last_edit)
 
 
-def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[ListingRow]:
+def rows_of_edit(edit: LastEdit, configuration: Configuration) -> list[PageRow]:
     """The rows of an edit: its description, numbers of words, shares of instructions, and the listing."""
     listed = list(items([edit.words.astype("<u2").tobytes()], configuration))
     what = describe(edit.before, edit.after, MOST_DESCRIBED) or "no change"
     return [
-        ListingRow("the scene was opened" if edit.before is edit.after else what, YELLOW),
-        ListingRow(f"{counted(len(edit.words), 'word')}: {_effect(listed, configuration)}"),
-        ListingRow(f"besides, {counted(edit.other_words, 'word')} for {OTHERS}"),
-        ListingRow(),
+        PageRow("the scene was opened" if edit.before is edit.after else what, YELLOW),
+        PageRow(f"{counted(len(edit.words), 'word')}: {_effect(listed, configuration)}"),
+        PageRow(f"and {counted(edit.other_words, 'word')} for menus, panels and other parts of the screen"),
+        PageRow(),
         *_shares(listed, len(edit.words)),
-        ListingRow(),
+        PageRow(),
         *[row for item in listed for row in _listing(item)],
     ]
 
@@ -113,39 +82,35 @@ def counted(count: int, noun: str) -> str:
 
 def _effect(listed: Sequence[ListingItem], configuration: Configuration) -> str:
     """The numbers of the entries and of the words of the picture that instructions write."""
-    data: Counter[str] = Counter()
+    lengths = {"LAM": 0, "WI": 0}
+    for item in listed:
+        if item.instruction is not None and item.instruction.format.name in lengths:
+            lengths[item.instruction.format.name] += len(item.instruction.data)
+    entries = lengths["LAM"] // (1 if configuration.entry_format is EntryFormat.WORD_12 else 2)
+    words = counted(lengths["WI"], "word")
+    return f"{counted(entries, 'entry')} of the lookup table, and {words} of the picture"
+
+
+def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[PageRow]:
+    """A row for each kind of instruction: its number, its words, and their share, the largest share first."""
+    lengths: dict[tuple[str, str], list[int]] = {}
     for item in listed:
         if item.instruction is not None:
-            data[item.instruction.format.name] += len(item.instruction.data)
-    entries = data["LAM"] // (1 if configuration.entry_format is EntryFormat.WORD_12 else 2)
-    return (
-        f"{counted(entries, 'entry')} of the lookup table, and {counted(data['WI'], 'word')} of the picture"
-    )
+            form = item.instruction.format
+            lengths.setdefault((form.name, form.meaning), []).append(len(item.words))
+    for (name, meaning), each in sorted(lengths.items(), key=lambda row: -sum(row[1])):
+        count, length = counted(len(each), "instruction"), counted(sum(each), "word")
+        yield PageRow(f"{name:4} {count:>16} {length:>14} {sum(each) / words:>6.1%}  {meaning}")
 
 
-def _shares(listed: Sequence[ListingItem], words: int) -> Iterator[ListingRow]:
-    """A row for each kind of instruction: its number, its words, and their share, the largest share first."""
-    counts: Counter[str] = Counter()
-    lengths: Counter[str] = Counter()
-    meanings = {}
-    for item in listed:
-        name = "raw" if item.instruction is None else item.instruction.format.name
-        meanings[name] = item.note if item.instruction is None else item.instruction.format.meaning
-        counts[name] += 1
-        lengths[name] += len(item.words)
-    for name, length in lengths.most_common():
-        count, length_text = counted(counts[name], "instruction"), counted(length, "word")
-        yield ListingRow(f"{name:4} {count:>16} {length_text:>14} {length / words:>6.1%}  {meanings[name]}")
-
-
-def _listing(item: ListingItem) -> Iterator[ListingRow]:
+def _listing(item: ListingItem) -> Iterator[PageRow]:
     """The lines of an instruction; of long data, the first lines and the number of words left out."""
     lines = item.lines()
     for number, line in enumerate(islice(lines, MOST_LINES)):
         for part in wrap(line, CHARACTERS, subsequent_indent=INDENT, break_on_hyphens=False):
-            yield ListingRow(part, LIGHT_GRAY if number else WHITE)
+            yield PageRow(part, LIGHT_GRAY if number else WHITE)
     following = next(lines, None)
     if following is not None:
         place = int(following.partition(":")[0], 16)
         left_out = item.place + len(item.words) - place
-        yield ListingRow(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", LIGHT_GRAY)
+        yield PageRow(f"{INDENT}and {counted(left_out, 'word')} more of this instruction", LIGHT_GRAY)

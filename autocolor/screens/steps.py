@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from autocolor.journal.description import describe
 from autocolor.screens.comparing import MOST_DESCRIBED, NOW
 from autocolor.screens.session import PICTURE, SPLIT, Session
@@ -31,23 +33,20 @@ def switch_split(session: Session) -> None:
 
 def undo(session: Session, steps: int = 1) -> None:
     """Undo the last step, or some steps at once."""
-    after = session.scene
-    if session.studio.undo(steps):
-        tell_steps(session, "undone", steps, describe(session.scene, after, MOST_DESCRIBED))
-    else:
-        session.tell("nothing to undo")
+    go(session, session.studio.undo, "undo", steps)
 
 
 def redo(session: Session, steps: int = 1) -> None:
     """Redo the last undone step, or some steps at once."""
+    go(session, session.studio.redo, "redo", steps)
+
+
+def go(session: Session, run: Callable[[int], bool], verb: str, steps: int) -> None:
+    """Go some steps back or forth, and tell what they changed."""
     before = session.scene
-    if session.studio.redo(steps):
-        tell_steps(session, "redone", steps, describe(before, session.scene, MOST_DESCRIBED))
-    else:
-        session.tell("nothing to redo")
-
-
-def tell_steps(session: Session, verb: str, steps: int, difference: str) -> None:
-    """Tell what was undone or redone."""
+    if not run(steps):
+        session.tell(f"nothing to {verb}")
+        return
+    earlier, later = (session.scene, before) if verb == "undo" else (before, session.scene)
     count = f"{steps} steps " if steps > 1 else ""
-    session.tell(f"{count}{verb}: {difference or 'no change'}")
+    session.tell(f"{count}{verb}ne: {describe(earlier, later, MOST_DESCRIBED) or 'no change'}")

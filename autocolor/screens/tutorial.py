@@ -8,28 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Final, NamedTuple
+from functools import partial
+from typing import Any, Final, NamedTuple
 
 from autocolor.journal.history import History, Saved
 from autocolor.scene.lights import Flap, Light
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Surface
 from autocolor.screens.session import Session
-from autocolor.widgets.items import (
-    GREEN,
-    NIGHT,
-    SLATE,
-    WHITE,
-    YELLOW,
-    Area,
-    Item,
-    filled,
-    outline,
-    text,
-)
+from autocolor.widgets.items import GREEN, WHITE, YELLOW, Area
 from autocolor.widgets.menu import WIDE_BAR, WORK
-from autocolor.widgets.widget import MARGIN, PanelButton, Place, Widget
+from autocolor.widgets.widget import Panel, PanelButton, Widget
 
 # The lessons. A function compares two scenes to see whether the task was done: by a screen, a bar, a key,
 # or in the picture itself.
@@ -55,79 +43,49 @@ def work_of(history: History) -> Work:
     return Work(history.scene, history.saved)
 
 
-def _moved(before: Work, now: Work) -> bool:
-    return any(old.position != light.position for old, light in lights_of_both(before, now))
+def edited(table: str, values_of: Callable[[Any], Sequence[object]]) -> Callable[[Work, Work], bool]:
+    """A function that sees whether a row of a table has another value; None is no value."""
+
+    def is_edited(before: Work, now: Work) -> bool:
+        old_rows = {row.name: row for row in vars(before.scene)[table]}
+        return any(
+            value is not None and value != old
+            for row in vars(now.scene)[table]
+            if row.name in old_rows
+            for old, value in zip(values_of(old_rows[row.name]), values_of(row), strict=True)
+        )
+
+    return is_edited
 
 
-def _cut_off(before: Work, now: Work) -> bool:
-    return any(
-        flap is not None and flap != old_flap and _cuts(flap)
-        for old, light in lights_of_both(before, now)
-        for old_flap, flap in zip(_flaps(old), _flaps(light), strict=True)
-    )
+def cutting_flaps(light: Light) -> list[Flap | None]:
+    """The flaps along x, y and z, each None if it does not cut off light anywhere."""
+    flaps = (light.flaps.x, light.flaps.y, light.flaps.z)
+    endless = (-math.inf, math.inf)
+    return [flap if flap and flap.on and (flap.minimum, flap.maximum) != endless else None for flap in flaps]
 
 
-def _narrowed(before: Work, now: Work) -> bool:
-    return any(
-        light.cone_angle is not None and light.cone_angle != old.cone_angle
-        for old, light in lights_of_both(before, now)
-    )
-
-
-def _mixed(before: Work, now: Work) -> bool:
-    return any(
-        (old.paint.object_color, old.paint.light_color, old.paint.ramp)
-        != (surface.paint.object_color, surface.paint.light_color, surface.paint.ramp)
-        for old, surface in surfaces_of_both(before, now)
-    )
-
-
-def _blended(before: Work, now: Work) -> bool:
-    return any(old.paint.blend != surface.paint.blend for old, surface in surfaces_of_both(before, now))
-
-
-def _saved(before: Work, now: Work) -> bool:
-    # An opened scene was not saved yet: it has no saved files.
+def is_saved(before: Work, now: Work) -> bool:
+    """Whether the scene was saved. An opened scene has no saved files."""
     return now.saved is not before.saved and bool(now.saved.files)
-
-
-def _flaps(light: Light) -> tuple[Flap | None, Flap | None, Flap | None]:
-    return light.flaps.x, light.flaps.y, light.flaps.z
-
-
-def _cuts(flap: Flap) -> bool:
-    """Whether a flap cuts off light anywhere."""
-    return flap.on and (flap.minimum > -math.inf or flap.maximum < math.inf)
-
-
-def lights_of_both(before: Work, now: Work) -> list[tuple[Light, Light]]:
-    """The lights that both scenes have, by name."""
-    old = {light.name: light for light in before.scene.lights}
-    return [(old[light.name], light) for light in now.scene.lights if light.name in old]
-
-
-def surfaces_of_both(before: Work, now: Work) -> list[tuple[Surface, Surface]]:
-    """The surfaces that both scenes have, by name."""
-    old = {surface.name: surface for surface in before.scene.surfaces}
-    return [(old[surface.name], surface) for surface in now.scene.surfaces if surface.name in old]
 
 
 LESSONS: Final = (
     Lesson(
         "move a light",
         (
-            "The right edge brings the menu: pick views above it. Pick a light in",
-            "one of the views, then its new place in the same view; or drag it.",
+            "The right edge brings the menu: pick views above it. Drag a light in",
+            "one of the views. Or pick it, and then its new place in that view.",
         ),
-        _moved,
+        edited("lights", lambda light: [light.position]),
     ),
     Lesson(
         "flaps",
         (
-            "Keep a light from a part of the car: in this menu, or that of lights,",
-            "switch on one of the flaps x, y and z, and set where it ends.",
+            "Keep a light from a part of the car: in the menu of views or lights,",
+            "add one of the flaps x, y and z, and set where it ends.",
         ),
-        _cut_off,
+        edited("lights", cutting_flaps),
     ),
     Lesson(
         "a cone",
@@ -135,7 +93,7 @@ LESSONS: Final = (
             "Make a spotlight: in the same menu, switch on the cone angle. Drag",
             "along its bar until the rim of the light is where you want it.",
         ),
-        _narrowed,
+        edited("lights", lambda light: [light.cone_angle]),
     ),
     Lesson(
         "mix a color",
@@ -143,15 +101,15 @@ LESSONS: Final = (
             "Paint the car: pick picture at the top, pick the body, then colors at",
             "the top. Drag the bars, or pick one of the paints in the menu.",
         ),
-        _mixed,
+        edited("surfaces", lambda row: [row.paint.object_color, row.paint.light_color, row.paint.ramp]),
     ),
     Lesson(
         "blend",
         (
-            "Pick < picture, then light blending, and drag the handle of the bar:",
-            "above it, the color of the body goes over into that of the light.",
+            "In the menu of colors, pick light blending; drag the handle of the",
+            "bar: above it, the color of the body goes over into the light's.",
         ),
-        _blended,
+        edited("surfaces", lambda row: [row.paint.blend]),
     ),
     Lesson(
         "save",
@@ -159,37 +117,34 @@ LESSONS: Final = (
             "Pick file at the top, and save there: the message line tells you the",
             "names of the files that hold the scene and the picture.",
         ),
-        _saved,
+        is_saved,
     ),
 )
 """The tasks, in the order of the paper: lights, flaps and cones, colors."""
 
+END: Final = (
+    "That was all. Views, reflectance, mapping, variants and undo are in",
+    "the menus, too. Your work stays: pick end, and go on with it.",
+)
 
 HEAD_LINES: Final = 16
 """The height of the panel when it is folded."""
 
 LINES: Final = 40
-LINE_STEP: Final = 12
 
 BUTTON: Final = 48
 """Elements of a button in the panel's first line."""
-
-END: Final = (
-    "That was all. Views, reflectance, mapping, variants and undo are in",
-    "the menus, too. What you made stays: pick end, and go on with it.",
-)
 
 
 class Tutorial:
     """The lessons of a session, with a panel that shows them until the tutorial has ended."""
 
-    def __init__(self, session: Session, lessons: Sequence[Lesson] = LESSONS) -> None:
+    def __init__(self, session: Session) -> None:
         self._session = session
-        self._lessons = lessons
         self._number = 0
         self._is_done = False
         """Whether the lesson before was done, and not skipped."""
-        self._before = self._seen = work_of(session.studio.history)
+        self._before = work_of(session.studio.history)
         self._is_low = True
         self._is_folded = False
         self.has_ended = False
@@ -198,98 +153,50 @@ class Tutorial:
     @property
     def lesson(self) -> Lesson | None:
         """The lesson to do; None after the last lesson."""
-        return self._lessons[self._number] if self._number < len(self._lessons) else None
-
-    def look(self) -> None:
-        """Go on to the next lesson if this one has been done."""
-        now = work_of(self._session.studio.history)
-        if now == self._seen or self.lesson is None:
-            return
-        self._seen = now
-        if self.lesson.is_done(self._before, now):
-            self._go_on(True)
+        return LESSONS[self._number] if self._number < len(LESSONS) else None
 
     def _go_on(self, is_done: bool) -> None:
         self._number, self._is_done, self._is_folded = self._number + 1, is_done, False
-        self._before = self._seen = work_of(self._session.studio.history)
-
-    def _skip(self) -> None:
-        if self.lesson is not None:
-            self._go_on(False)
-
-    def _end(self) -> None:
-        self.has_ended = True
-
-    def _move(self) -> None:
-        self._is_low = not self._is_low
-
-    def _fold(self) -> None:
-        self._is_folded = not self._is_folded
-
-    @property
-    def _area(self) -> Area:
-        height = HEAD_LINES if self._is_folded else LINES
-        top = WIDE_BAR.top - height if self._is_low else WORK.top
-        return Area(WORK.left, top, WORK.right, top + height - 1)
+        self._before = work_of(self._session.studio.history)
 
     def widgets(self) -> Sequence[Widget]:
-        """The panel, the topmost widget first."""
+        """The panel, the topmost widget first; the next lesson if this one has been done."""
         if self.has_ended:
             return ()
-        self.look()
+        if self.lesson is not None and self.lesson.is_done(
+            self._before, work_of(self._session.studio.history)
+        ):
+            self._go_on(True)
+        height = HEAD_LINES if self._is_folded else LINES
+        top = WIDE_BAR.top - height if self._is_low else WORK.top
+        area = Area(WORK.left, top, WORK.right, top + height - 1)
+        head, ink = ("well done!  ", GREEN) if self._is_done else ("", YELLOW)
         buttons = [
-            ("skip", "Go on without doing this.", self._skip),
-            ("end", "End the tutorial; what was made stays.", self._end),
-            ("down" if not self._is_low else "up", "Move the panel out of the way.", self._move),
+            ("end", "End the tutorial; your work stays.", partial(setattr, self, "has_ended", True)),
+            (
+                "up" if self._is_low else "down",
+                "Move the panel out of the way.",
+                partial(setattr, self, "_is_low", not self._is_low),
+            ),
         ]
         if self.lesson is None:
-            del buttons[0]
-        area = self._area
+            head, lines = f"{head}end of the tutorial", END
+        else:
+            head, lines = f"{head}{self._number + 1} of {len(LESSONS)}: {self.lesson.name}", self.lesson.lines
+            buttons.insert(0, ("skip", "Go on without doing this.", partial(self._go_on, False)))
         panel: list[Widget] = []
         right = area.right - 1
         for label, help, run in buttons:
             place = Area(right - BUTTON + 1, area.top + 1, right, area.top + HEAD_LINES - 2)
             panel.append(PanelButton(label, help, area=place, run=run, within="tutorial"))
             right -= BUTTON
-        task = Task(
-            "tutorial",
-            "Fold the panel, or show it whole.",
-            area=area,
-            head=self._head,
-            lines=() if self._is_folded else (END if self.lesson is None else self.lesson.lines),
-            is_done=self._is_done,
-            run=self._fold,
-        )
-        return [*panel, task]
-
-    @property
-    def _head(self) -> str:
-        done = "well done!  " if self._is_done else ""
-        if self.lesson is None:
-            return f"{done}end of the tutorial"
-        return f"{done}{self._number + 1} of {len(self._lessons)}: {self.lesson.name}"
-
-
-@dataclass(frozen=True)
-class Task(Widget):
-    """A task: a headline, and lines below it unless it is folded. A pick calls `run`."""
-
-    head: str = ""
-    lines: Sequence[str] = ()
-    is_done: bool = False
-    run: Callable[[], object] = lambda: None
-
-    def items(self, lit: bool) -> list[Item]:
-        left, top = self.area.left + MARGIN, self.area.top + 4
         return [
-            filled(self.area, NIGHT),
-            outline(self.area, SLATE),
-            text(self.head, left, top, GREEN if self.is_done else YELLOW),
-            *(
-                text(line, left, top + LINE_STEP * number, WHITE)
-                for number, line in enumerate(self.lines, start=1)
+            *panel,
+            Panel(
+                "tutorial",
+                "Fold the panel, or show it whole.",
+                area=area,
+                lines=[(head, ink), *(() if self._is_folded else ((line, WHITE) for line in lines))],
+                run=partial(setattr, self, "_is_folded", not self._is_folded),
             ),
         ]
-
-    def pick(self, place: Place) -> object:
-        return self.run()

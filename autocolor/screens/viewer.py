@@ -24,10 +24,9 @@ from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_actions import (
     FileOnDisk,
     bring_paints,
-    lying,
     open_file,
+    remark,
     save_screenshot,
-    take_changes,
 )
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
@@ -74,7 +73,7 @@ class Viewer:
         self.board = Board(self.session, self.screens)
         self._watching = Watching(self.display)
         self.session.keys = rows_of_help()
-        self._disk = FileOnDisk(self.studio)
+        self._disk = FileOnDisk(self.session)
         self._action = Action(self.session)
         self._drags = 0
         """How many drags and picks there were."""
@@ -83,7 +82,7 @@ class Viewer:
         """The words of the studio's picture on the last page."""
         self._pictured: tuple[Scene, Words | None] = self.studio.scene, None
         """The scene and the words of the last page whose base was the picture."""
-        hints = "F1: help", "Tab or the right edge: the menu", lying(self.session)
+        hints = "F1: help", "Tab or the right edge: the menu", remark(self.session)
         self.session.tell("; ".join(filter(None, hints)), persistent=True)
         self._update()
         self._unit.show()
@@ -177,7 +176,8 @@ class Viewer:
         self.session.has_keyboard = True
         if action == "press" and self._watching.end():
             self._update()
-        for gesture in self._mouse.gestures(element, line, action, button, steps, shift, control):
+        place = Gesture("hover", element, line, button, float(steps), shift, control)
+        for gesture in self._mouse.gestures(action, place):
             self.point(gesture)
 
     def poll(self) -> None:
@@ -240,7 +240,7 @@ class Viewer:
 
     def _take_changes(self) -> None:
         """Show the changes that another program made to the scene's file."""
-        if self._disk.was_changed() and self._reopen_by(lambda: take_changes(self.session, self._disk)):
+        if self._disk.was_changed() and self._reopen_by(self._disk.take):
             self._update()
 
     def _reopen_by(self, run: Callable[[], object]) -> bool:
@@ -400,11 +400,11 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     MappingScreen,
     ScalarScreen,
     VariantsScreen,
+    EntriesScreen,
+    FileScreen,
     HistoryScreen,
     ExplainScreen,
-    FileScreen,
     SplitScreen,
-    EntriesScreen,
     SentScreen,
     HelpScreen,
 )

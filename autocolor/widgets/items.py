@@ -12,9 +12,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Floats, Numbers, Words
+from autocolor.arrays import Booleans, Floats, Numbers, Words
 from autocolor.checks import printable
-from autocolor.mapping.palette import in_palette
 from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import instructions
 
@@ -22,25 +21,18 @@ from ramtek_emu import instructions
 # the entries of the scene. The sixteen highest words, `SCREENS`, have constant entries: the colors below.
 #
 # Screen                        Words                                            Borrowed entries
-# picture, lights, reflectance, all; SCREENS over the picture                    none
-#   mapping, scalar
+# over the picture              all; SCREENS over the picture                    none
 # light and view                SCREENS; all in its small picture                none
 # color mixing                  SCREENS; the chosen surface's in a picture       shades, hues, swatches, and
 #                               and a bar                                        grays of the other surfaces
 # light blending                all; the chosen surface's again in a bar         none
-# kept                          SCREENS                                          small pictures, in the words
-#                                                                                of all surfaces
 # entries                       all, each in its cell                            none
-# file                          SCREENS                                          small picture, in the words
-#                                                                                of all surfaces
+# variants, file                SCREENS                                          the palette of a gallery, in
+#                                                                                the words of all surfaces
 # sent, help                    SCREENS                                          none
 #
-# A screen borrows entries by `Screen.loads` alone. Color mixing borrows words of the surfaces that it shows
-# in grays. Where these are too few, it borrows some words of the chosen surface, spread over its levels: each
-# such level is then shown by the level beside it; see `mixing_palette.mixing_words`.
-#
-# A page has a base and all 1024 entries. A sheet loads the entries that differ from the page before, and
-# writes the words of another base whole. So the next page restores what a screen borrowed or covered.
+# A screen borrows entries by `Content.loads` alone. A sheet loads the entries that differ from the page
+# before, and writes the words of another base. So the next page restores what a screen borrowed or covered.
 
 WIDTH: Final = 640
 HEIGHT: Final = 480
@@ -98,21 +90,11 @@ class Area(NamedTuple):
 
     def overlaps(self, other: Area) -> bool:
         """Whether the two have a pixel in common."""
-        return (
-            self.left <= other.right
-            and other.left <= self.right
-            and self.top <= other.bottom
-            and other.top <= self.bottom
-        )
+        return not self.within(other).is_empty
 
     def covers(self, other: Area) -> bool:
         """Whether all pixels of another area are inside."""
-        return (
-            self.left <= other.left
-            and other.right <= self.right
-            and self.top <= other.top
-            and other.bottom <= self.bottom
-        )
+        return self.within(other) == other
 
     def within(self, other: Area) -> Area:
         """The pixels that both areas have."""
@@ -132,12 +114,6 @@ SCREEN: Final = Area(0, 0, WIDTH - 1, HEIGHT - 1)
 
 
 # Strokes: straight lines on the screen, (n, 4) float64: element and line of the start, and of the end.
-
-MOST_STROKES: Final = 1 << 14
-"""Assumed: of a huge mesh, only so many strokes are drawn in a view, the longest.
-
-An area of 248 x 224 has three times as many pixels; more strokes would fill it.
-"""
 
 
 def clipped(strokes: Floats, area: Area) -> Floats:
@@ -190,39 +166,6 @@ def between(starts: Floats, ends: Floats) -> Floats:
 def together(strokes: Sequence[Floats]) -> Floats:
     """All strokes of several arrays, (n, 4)."""
     return np.concatenate([np.empty((0, 4)), *strokes])
-
-
-def drawn(strokes: Floats, most: int = MOST_STROKES) -> Numbers:
-    """The strokes from pixel to pixel, (n, 4) int64, none twice; the `most` longest if there are more.
-
-    Ends are rounded to pixels, half up. Strokes shorter than a pixel are left out: they would turn the
-    details of a mesh into a blot, and the ends of longer strokes cover most of them. If all strokes are that
-    short, the first is drawn as a point.
-    """
-    pixels = np.floor(strokes + 0.5).astype(np.int64)
-    # Write each stroke from its upper or left end.
-    backward = (pixels[:, 3] < pixels[:, 1]) | (
-        (pixels[:, 3] == pixels[:, 1]) & (pixels[:, 2] < pixels[:, 0])
-    )
-    pixels[backward] = pixels[backward][:, [2, 3, 0, 1]]
-    steps = np.abs(pixels[:, 2:] - pixels[:, :2]).max(axis=1, initial=0)
-    longer = pixels[steps > 0] if (steps > 0).any() else pixels[:1]
-    if not len(longer):
-        return longer
-    distinct = _distinct(longer)
-    if len(distinct) <= most:
-        return distinct
-    lengths = np.abs(distinct[:, 2:] - distinct[:, :2]).max(axis=1)
-    return np.take(distinct, np.sort(np.argsort(-lengths, kind="stable")[:most]), axis=0)
-
-
-def _distinct(pixels: Numbers) -> Numbers:
-    """The rows without repetitions, in the order of their columns."""
-    order = np.lexsort(pixels.T[::-1])
-    rows = pixels[order]
-    differs = np.ones(len(rows), np.bool_)
-    differs[1:] = (rows[1:] != rows[:-1]).any(axis=1)
-    return np.compress(differs, rows, axis=0)
 
 
 CHARACTER: Final = 7
@@ -281,21 +224,14 @@ def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int
 
 
 def segments(strokes: Floats, word: int, area: Area) -> Item:
-    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area."""
-    pixels = pixels_inside(strokes, area)
-    return Item(area, instructions.write_segments(pixels, word).tobytes() if len(pixels) else b"")
-
-
-def pixels_inside(strokes: Floats, area: Area) -> Numbers:
-    """The end pixels, (inside, 4), of the parts of finite strokes, (n, 4), that are inside an area.
+    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area.
 
     Hardware: the 9300 clips lines at its memory alone; the write window is of later models.
     """
-    area = area.within(DRAWABLE)
-    if area.is_empty:
-        return np.empty((0, 4), np.int64)
-    strokes = strokes[np.isfinite(strokes).all(axis=1)]
-    return rounded(clipped(strokes, area))
+    inside = area.within(DRAWABLE)
+    pixels = rounded(clipped(strokes[np.isfinite(strokes).all(axis=1)], inside))
+    is_drawn = len(pixels) and not inside.is_empty
+    return Item(area, instructions.write_segments(pixels, word).tobytes() if is_drawn else b"")
 
 
 def image(words: Words, left: int, top: int) -> Item:
@@ -339,23 +275,6 @@ _RIGHT: Final = _triangle()
 _POINTERS: Final = (_RIGHT, _RIGHT.T, _RIGHT[:, ::-1], _RIGHT.T[::-1])
 
 
-class SmallPicture:
-    """A picture in borrowed entries: in at most `most` colors of `full`, (lines, elements, 3)."""
-
-    def __init__(self, full: Bytes, most: int) -> None:
-        self.full = full
-        self.most = most
-        self._places, self.colors = in_palette(full, most)
-        self._item: tuple[tuple[int, int, int], Item] | None = None
-
-    def item(self, first: int, left: int, top: int) -> Item:
-        """The picture with its upper left corner at (left, top), with words from a first word on."""
-        if self._item is None or self._item[0] != (first, left, top):
-            words = (self._places + np.uint16(first)).astype(np.uint16)
-            self._item = (first, left, top), image(words, left, top)
-        return self._item[1]
-
-
 def area_of(points: Floats, margin: int = 0, limit: Area = SCREEN) -> Area:
     """The area of (n, 2) elements and lines with a margin around them, within a limit."""
     if not len(points):
@@ -371,9 +290,12 @@ def rounded(places: Floats) -> Numbers:
 
 
 def fitted(line: str, most: int) -> str:
-    """A line of text that has at most so many characters; a longer one is cut and ends in two periods.
+    """A text of at most `most` characters. A longer text loses its middle, because ends of names differ.
 
-    >>> fitted("windscreen", 10), fitted("windscreen", 6), fitted("windscreen", 1), fitted("windscreen", -1)
-    ('windscreen', 'wind..', '.', '')
+    >>> fitted("fender of the left door 12.obj", 16), fitted("windscreen", 1), fitted("windscreen", -1)
+    ('fender .. 12.obj', '.', '')
     """
-    return line if len(line) <= most else f"{line[: max(0, most - 2)]}.."[: max(0, most)]
+    if len(line) <= most:
+        return line
+    end = max(0, (most - 2) // 2)
+    return f"{line[: max(0, most - 2 - end)]}..{line[len(line) - end :]}"[: max(0, most)]

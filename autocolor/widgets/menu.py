@@ -27,7 +27,16 @@ from autocolor.widgets.items import (
     pointer,
     text,
 )
-from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Heading, Place, Widget
+from autocolor.widgets.widget import (
+    MARGIN,
+    ROW_LINES,
+    TEXT_DOWN,
+    Button,
+    Choice,
+    Place,
+    Widget,
+    page_choice,
+)
 
 MESSAGE_LINES: Final = 16
 """The height of the message line, at the bottom of every screen."""
@@ -46,7 +55,8 @@ WORK: Final = Area(0, MENU.top, MENU.left - 1, MENU.bottom)
 WIDE_BAR: Final = Area(0, MENU.bottom - 23, WORK.right, MENU.bottom)
 """Where the wide bar of a number stands."""
 
-MOST_LINES: Final = MENU.height
+MORE: Final = "more"
+"""The label of the row that turns the pages of a menu, and of a list of names."""
 
 
 def lines_of(rows: Sequence[Widget]) -> int:
@@ -55,40 +65,19 @@ def lines_of(rows: Sequence[Widget]) -> int:
 
 
 def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
-    """The rows with their areas, from the top; rows that do not fit are left out."""
-    placed: list[Widget] = []
-    top = area.top
+    """The rows of the menu, or of another column, with their areas, from the top."""
+    placed, top = [], area.top
     for row in rows:
-        if top + row.row_lines - 1 > area.bottom:
-            break
-        placed.append(row.at(Area(area.left + 1, top, area.right, top + row.row_lines - 1)))
-        top += row.row_lines
+        end = top + row.row_lines
+        placed.append(row.at(Area(area.left + 1, top, area.right, end - 1)))
+        top = end
     return placed
 
 
-def menu_items(rows: Sequence[Widget], lit: Widget | None, area: Area = MENU) -> list[Item]:
-    """The items of a menu: its ground and its rows. The row `lit` is lit."""
-    items = [filled(area, NIGHT), filled(area._replace(right=area.left), SLATE)]
-    for row in rows:
-        items += row.items(row is lit and not row.why_not)
-    return items
-
-
-def pages_of(rows: Sequence[Widget], lines: int = MOST_LINES) -> list[list[Widget]]:
-    """The rows in pages that fit, each with room for one more row, which turns to the next page."""
-    if lines_of(rows) <= lines:
-        return [list(rows)]
-    pages: list[list[Widget]] = [[]]
-    used = 0
-    for row in rows:
-        if used + row.row_lines > lines - ROW_LINES:
-            # A heading goes with the row below it; that of a section stays under the pointer that opened it.
-            headings = [pages[-1].pop()] if len(pages[-1]) > 1 and isinstance(pages[-1][-1], Heading) else []
-            pages.append(headings)
-            used = lines_of(headings)
-        pages[-1].append(row)
-        used += row.row_lines
-    return pages
+def menu_items(rows: Sequence[Widget], lit: Widget | None) -> list[Item]:
+    """The items of the menu: its ground and its rows. The row `lit` is lit."""
+    items = [filled(MENU, NIGHT), filled(MENU._replace(right=MENU.left), SLATE)]
+    return [*items, *(item for row in rows for item in row.items(row is lit and not row.why_not))]
 
 
 def page_of_menu(
@@ -96,20 +85,22 @@ def page_of_menu(
 ) -> list[Widget]:
     """The rows of a page of the menu, counted from 0, laid out; the last page if there are not so many.
 
-    Each page ends with the `last` rows. If there are several, the row before them calls `turn` with the
-    number of the next page.
+    Each page ends with the `last` rows. If there are several pages, the row before them turns to another.
     """
-    pages = pages_of(rows, MOST_LINES - lines_of(last))
+    room = MENU.height - lines_of(last)
+    pages, used = [list(rows)], 0
+    if lines_of(rows) > room:
+        pages = [[]]
+        for row in rows:
+            if used + row.row_lines > room - ROW_LINES:
+                pages.append([])
+                used = 0
+            pages[-1].append(row)
+            used += row.row_lines
     number = min(number, len(pages) - 1)
-    if len(pages) == 1:
-        return laid_out([*pages[0], *last])
-    more = Button(
-        "more",
-        "The other rows of this menu.",
-        run=partial(turn, (number + 1) % len(pages)),
-        value=f"{number + 1} of {len(pages)}",
-    )
-    return laid_out([*pages[number], more, *last])
+    if len(pages) > 1:
+        pages[number].append(page_choice("The other rows of this menu.", number, len(pages), turn, MORE))
+    return laid_out([*pages[number], *last])
 
 
 # The list of a choice with many names: at the left of its row, in as many columns as it needs.
@@ -131,10 +122,8 @@ class NameList(NamedTuple):
 
     def items(self, lit: Widget | None) -> list[Item]:
         """The items of the list. The row `lit` is lit."""
-        items = [filled(self.area, NIGHT)]
-        for row in self.rows:
-            items += row.items(row is lit)
-        return [*items, outline(self.area, SLATE)]
+        cells = (item for row in self.rows for item in row.items(row is lit))
+        return [filled(self.area, NIGHT), *cells, outline(self.area, SLATE)]
 
 
 def list_of(
@@ -149,10 +138,9 @@ def list_of(
     width = min(2 * MARGIN + CHARACTER * max(map(len, names)), WORK.width)
     most = LIST_ROWS * (WORK.width // width)
     size = len(names) if len(names) <= most else most - 1
-    pages = [names[first : first + size] for first in range(0, len(names), size)]
     if page is None:
         page = names.index(present) // size if present in names else 0
-    cells = [
+    cells: list[Widget] = [
         Button(
             name,
             f"{choice.label}: {name}. A click elsewhere closes the list.",
@@ -160,21 +148,19 @@ def list_of(
             run=partial(take, name),
             is_chosen=name == present,
         )
-        for name in pages[page]
+        for name in names[page * size : (page + 1) * size]
     ]
-    if len(pages) > 1:
-        turns = partial(turn, (page + 1) % len(pages))
-        value = f"{page + 1} of {len(pages)}"
-        cells.append(Button("more", "The other names.", within=choice.key, run=turns, value=value))
+    beside = next((number for number, cell in enumerate(cells) if cell.label == present), 0)
+    if size < len(names):
+        cells.append(page_choice("The other names.", page, -(-len(names) // size), turn, MORE, choice.key))
     columns = -(-len(cells) // LIST_ROWS)
     rows = -(-len(cells) // columns)
-    beside = next((number for number, cell in enumerate(cells) if cell.is_chosen), 0) % rows
-    top = max(MENU.top, min(choice.area.top - ROW_LINES * beside, MENU.bottom + 1 - ROW_LINES * rows))
+    top = choice.area.top - ROW_LINES * (beside % rows)
+    top = max(MENU.top, min(top, MENU.bottom + 1 - ROW_LINES * rows))
     left = MENU.left - columns * width
     placed = []
     for number, cell in enumerate(cells):
-        column, row = divmod(number, rows)
-        x, y = left + width * column, top + ROW_LINES * row
+        x, y = left + width * (number // rows), top + ROW_LINES * (number % rows)
         placed.append(cell.at(Area(x, y, x + width - 1, y + ROW_LINES - 1)))
     return NameList(Area(left, top, MENU.left - 1, top + ROW_LINES * rows - 1), placed)
 
@@ -229,11 +215,8 @@ def folded(
     shown = list(always)
     for section, *inside in others:
         assert isinstance(section, Section)
-        label = section.label
-        help = "A click folds these rows."
-        if label not in is_open:
-            labels = ", ".join(row.label for row in inside)
-            help = fitted(f"A click shows {labels}", MESSAGE_CHARACTERS)
+        label, folded_rows = section.label, ", ".join(row.label for row in inside)
+        help = "A click folds these rows." if label in is_open else f"A click shows {folded_rows}."
         shown.append(replace(section, help=help, is_open=label in is_open, fold=partial(fold, label)))
         shown += inside if label in is_open else []
     return shown

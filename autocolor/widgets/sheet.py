@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import chain
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,9 +45,6 @@ class Sent(NamedTuple):
     """The number of the next words, which write a base that is a picture. All further words are for items."""
 
 
-NOTHING: Final = Sent(read_only(np.zeros(0, np.uint16)), 0, 0)
-
-
 class Sheet:
     """Shows pages on a display, on which nothing else may draw meanwhile.
 
@@ -64,13 +61,10 @@ class Sheet:
     def show(self, page: Page) -> Sent:
         """Show a page; returns its words. Raises ReplyError or PortError if the display cannot be reached."""
         entries, base, others = self._changes(page)
-        parts = entries + base + others
-        if not parts:
-            self._page = page
-            return NOTHING
-        stream = read_only(np.concatenate(parts))
-        self._page = None
-        self._display.send(stream)
+        stream = read_only(np.concatenate([np.zeros(0, np.uint16), *entries, *base, *others]))
+        if len(stream):
+            self._page = None
+            self._display.send(stream)
         self._page = page
         return Sent(stream, sum(map(len, entries)), sum(map(len, base)))
 
@@ -90,29 +84,20 @@ class Sheet:
         """
         before = self._page
         entries: list[Words] = []
-        picture: list[Words] = []
-        others: list[Words] = []
-        of_base = others if isinstance(page.base, int) else picture
         if before is None:
-            entries += [instructions.reset(), self._encode_entries(0, page.entries)]
+            entries = [instructions.reset(), self._encode_entries(0, page.entries)]
         elif page.entries is not before.entries:
             differing = np.flatnonzero((page.entries != before.entries).any(axis=1))
             if len(differing):
                 first, last = int(differing[0]), int(differing[-1])
-                entries.append(self._encode_entries(first, page.entries[first : last + 1]))
-        whole = uncovered(self._whole, page.items)
-        if before is None:
-            of_base += _restored(page.base, whole)
-            redrawn = list(page.items)
-        else:
-            drawn = [area for area in [differing_area(before.base, page.base, whole)] if not area.is_empty]
-            restored, redrawn = changed_items(before.items, page.items, drawn)
-            for area in drawn:
-                of_base += _restored(page.base, area.within(self._whole))
-            for area in restored:
-                others += _restored(page.base, area.within(self._whole))
+                entries = [self._encode_entries(first, page.entries[first : last + 1])]
+        base, items = (None, ()) if before is None else (before.base, before.items)
+        drawn = differing_area(base, page.base, uncovered(self._whole, page.items))
+        restored, redrawn = changed_items(items, page.items, [] if drawn.is_empty else [drawn])
+        others = [words for area in restored for words in _restored(page.base, area.within(self._whole))]
         others += [np.frombuffer(item.stream, np.uint16) for item in redrawn]
-        return entries, picture, others
+        picture = _restored(page.base, drawn)
+        return (entries, [], picture + others) if isinstance(page.base, int) else (entries, picture, others)
 
 
 def changed_items(
@@ -184,27 +169,20 @@ def _overlapping(columns: Numbers, area: Area) -> Booleans:
     return overlaps
 
 
-def differing_area(before: Words | int, now: Words | int, area: Area) -> Area:
+def differing_area(before: Words | int | None, now: Words | int, area: Area) -> Area:
     """The smallest part of an area in which two bases differ; an empty area if they are the same."""
     nowhere = area._replace(bottom=area.top - 1)
-    if isinstance(before, int) or isinstance(now, int):
-        is_same = isinstance(before, int) and isinstance(now, int) and before == now
-        return nowhere if is_same else area
     if before is now:
         return nowhere
-    if before.shape != now.shape:
-        return area
-    places = slice(area.top, area.bottom + 1), slice(area.left, area.right + 1)
-    differs = before[places] != now[places]
-    lines, elements = (np.flatnonzero(differs.any(axis=axis)) for axis in (1, 0))
-    if not len(lines):
-        return nowhere
-    return Area(
-        area.left + int(elements[0]),
-        area.top + int(lines[0]),
-        area.left + int(elements[-1]),
-        area.top + int(lines[-1]),
-    )
+    if isinstance(before, np.ndarray) and isinstance(now, np.ndarray) and before.shape == now.shape:
+        places = slice(area.top, area.bottom + 1), slice(area.left, area.right + 1)
+        differs = before[places] != now[places]
+        lines, elements = (np.flatnonzero(differs.any(axis=axis)).tolist() for axis in (1, 0))
+        if not lines:
+            return nowhere
+        left, top = area.left + elements[0], area.top + lines[0]
+        return Area(left, top, area.left + elements[-1], area.top + lines[-1])
+    return nowhere if isinstance(before, int) and isinstance(now, int) and before == now else area
 
 
 def _restored(base: Words | int, area: Area) -> list[Words]:
@@ -214,15 +192,11 @@ def _restored(base: Words | int, area: Area) -> list[Words]:
     if isinstance(base, int):
         return [instructions.erase(area, base)]
     lines, elements = base.shape
-    whole = Area(0, 0, elements - 1, lines - 1)
-    parts = []
-    if not whole.covers(area):
-        # Beside a picture that is smaller than the screen is background.
-        parts.append(instructions.erase(area, BACKGROUND))
-        area = area.within(whole)
-    if not area.is_empty:
-        words = base[area.top : area.bottom + 1, area.left : area.right + 1]
-        parts.append(instructions.write_image(words, area.left, area.top))
+    left, top, right, bottom = inside = area.within(Area(0, 0, elements - 1, lines - 1))
+    # Beside a picture that is smaller than the screen is background.
+    parts = [] if inside == area else [instructions.erase(area, BACKGROUND)]
+    if not inside.is_empty:
+        parts.append(instructions.write_image(base[top : bottom + 1, left : right + 1], left, top))
     return parts
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final, NamedTuple, TypeVar
+from typing import Any, ClassVar, Final, NamedTuple, Self
 
 from autocolor.widgets.items import (
     BLACK,
@@ -25,6 +25,7 @@ from autocolor.widgets.items import (
     Item,
     filled,
     fitted,
+    outline,
     pointer,
     text,
 )
@@ -41,15 +42,13 @@ TEXT_DOWN: Final = 3
 BOX: Final = 8
 """Elements and lines of the box of a switch."""
 
-LABEL_LETTERS: Final = 4
-"""The fewest characters of a label that is cut."""
-
 MOST_IN_TURN: Final = 3
 """Assumed: names that picks take one after the other; more names are shown in a list."""
 
 NOWHERE: Final = Area(0, 0, -1, -1)
 
-SomeWidget = TypeVar("SomeWidget", bound="Widget")
+ROW_CHARACTERS: Final = 17
+"""The characters between the margins of a row of a menu."""
 
 
 class Place(NamedTuple):
@@ -57,17 +56,6 @@ class Place(NamedTuple):
 
     element: int
     line: int
-
-
-class Typed(NamedTuple):
-    """The text of a widget that can be typed over, and the function that takes the new text.
-
-    If it `is_proposed`, Return takes the text even if it was not changed, and a pick elsewhere gives it up.
-    """
-
-    text: str
-    take: Callable[[str], object]
-    is_proposed: bool = False
 
 
 @dataclass(frozen=True)
@@ -80,8 +68,6 @@ class Widget:
     area: Area = NOWHERE
     within: str = ""
     """The list or row that it belongs to, where several have widgets of the same label."""
-    row_lines: ClassVar[int] = ROW_LINES
-    """Its height in a menu."""
 
     @property
     def key(self) -> str:
@@ -98,16 +84,15 @@ class Widget:
         return self.hint
 
     @property
-    def typed(self) -> Typed | None:
-        """The text that can be typed over; None if there is none."""
-        return None
+    def row_lines(self) -> int:
+        """Its height in a menu."""
+        return ROW_LINES
 
     def has(self, element: int, line: int) -> bool:
         """Whether a place belongs to the widget."""
-        left, top, right, bottom = self.area
-        return left <= element <= right and top <= line <= bottom
+        return self.area.has(element, line)
 
-    def at(self: SomeWidget, area: Area) -> SomeWidget:
+    def at(self, area: Area) -> Self:
         """The same widget at an area."""
         # All widgets are placed for each event; `replace` would take most of that time.
         placed = object.__new__(type(self))
@@ -138,28 +123,33 @@ class Widget:
         left, _, right, _ = self.area
         return (right - left + 1 - 2 * MARGIN) // CHARACTER
 
-    def row(self, lit: bool, label: str = "", value: str = "", chosen: bool = False) -> list[Item]:
-        """The items of a row with a label at the left and a value at the right."""
+    def row(self, lit: bool, label: str, value: str = "", chosen: bool = False) -> list[Item]:
+        """The items of a row with a label at the left and a value at the right, or below in a higher row.
+
+        The value is whole if there is room. A label that does not fit beside it is shortened.
+        """
         left, top, right, _ = self.area
         background = WHITE if chosen else SLATE if lit else NIGHT
         ink = BLACK if chosen else self.ink
         room = self.characters
-        shown = short_name(value, room)
+        value = fitted(value, room)
         items = [filled(self.area, background)]
-        if shown:
-            start = right + 1 - MARGIN - CHARACTER * len(shown)
-            items.append(text(shown, start, top + TEXT_DOWN, ink, background))
-        beside = room - len(shown) - bool(shown)
-        # A value that fills the row is shown without its label: a letter or two of it would say nothing.
-        label = short_name(label, beside) if beside >= min(len(label), LABEL_LETTERS) else ""
+        if value:
+            start = right + 1 - MARGIN - CHARACTER * len(value)
+            below = self.area.height - ROW_LINES
+            items.append(text(value, start, top + TEXT_DOWN + below, ink, background))
+            room -= 0 if below else len(value) + 1
+        label = short_label(label, room)
         if label:
             quiet = LIGHT_GRAY if value and ink == WHITE else ink
             items.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
         return items
 
-    def labeled_row(self, lit: bool, value: str) -> list[Item]:
-        """The items of a row with the widget's own label, shortened where the value needs the room."""
-        return self.row(lit, short_label(self.label, self.characters - len(value) - 1), value)
+
+def lines_of_row(label: str, value: str) -> int:
+    """The height of a row of a menu: a long value stands on a line of its own, below the label."""
+    is_long = value and len(label) + 1 + len(value) > ROW_CHARACTERS
+    return 2 * ROW_LINES if is_long else ROW_LINES
 
 
 @dataclass(frozen=True)
@@ -186,12 +176,32 @@ class Gap(Widget):
 
 
 @dataclass(frozen=True)
+class Panel(Widget):
+    """A ground with an outline over the screen, with lines of text and their colors; a pick calls `run`."""
+
+    lines: Sequence[tuple[str, int]] = ()
+    run: Callable[[], object] = lambda: None
+
+    def items(self, lit: bool) -> list[Item]:
+        left, top = self.area.left + MARGIN, self.area.top + 4
+        texts = [text(line, left, top + 12 * row, word) for row, (line, word) in enumerate(self.lines)]
+        return [filled(self.area, NIGHT), outline(self.area, SLATE), *texts]
+
+    def pick(self, place: Place) -> object:
+        return self.run()
+
+
+@dataclass(frozen=True)
 class Button(Widget):
     """A row that calls `run` when it is picked; `value` stands at its right."""
 
     run: Callable[[], object] = lambda: None
     value: str = ""
     is_chosen: bool = False
+
+    @property
+    def row_lines(self) -> int:
+        return lines_of_row(self.label, self.value)
 
     def items(self, lit: bool) -> list[Item]:
         return self.row(lit, self.label, self.value, self.is_chosen)
@@ -223,7 +233,7 @@ class Switch(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         background = WHITE if self.is_chosen else SLATE if lit else NIGHT
-        items = self.row(lit, self.label, "  ", self.is_chosen)
+        items = self.row(lit, self.label, " ", self.is_chosen)
         return [*items, *box_items(self._box, self.is_on, BLACK if self.is_chosen else self.ink, background)]
 
     @property
@@ -256,8 +266,7 @@ class Steps(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         low, high = self.signs
-        room = self.characters - len(low) - len(high) - 2
-        return self.row(lit, f"{low} {fitted(self.label, room)}", high)
+        return self.row(lit, f"{low} {self.label}", high)
 
     def pick(self, place: Place) -> object:
         return self.step(1 if place.element > (self.area.left + self.area.right) / 2 else -1)
@@ -296,38 +305,42 @@ class Choice(Widget):
             return super().hint
         return f"{super().hint.removesuffix('.')}; a click lists all {len(self.names)}."
 
+    @property
+    def row_lines(self) -> int:
+        return lines_of_row(self.label, self.present)
+
     def items(self, lit: bool) -> list[Item]:
-        items = self.labeled_row(lit, self.present)
-        if not self.has_list:
-            return items
-        left, top, *_ = self.area
-        sign = pointer(left + 1, top + ROW_LINES // 2 - 1, LEFT, LIGHT_GRAY, SLATE if lit else NIGHT)
-        return [*items, sign]
+        items = self.row(lit, self.label, self.present)
+        if self.has_list:
+            left, top, *_ = self.area
+            ground = SLATE if lit else NIGHT
+            items.append(pointer(left + 1, top + ROW_LINES // 2 - 1, LEFT, LIGHT_GRAY, ground))
+        return items
 
     def pick(self, place: Place) -> object:
         return self.nudge(-1 if place.element < self.area.left + 3 * MARGIN else 1)
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
-        number = (place.element - self.area.left) * len(self.names) // self.area.width
-        name = self.names[min(max(number, 0), len(self.names) - 1)] if self.names else self.present
+        names = self.names or [self.present]
+        number = (place.element - self.area.left) * len(names) // self.area.width
+        name = names[min(max(number, 0), len(names) - 1)]
         return None if name == self.present else self.choose(name)
 
     def nudge(self, steps: float) -> object:
-        if not self.names:
-            return None
-        names = list(self.names)
-        step = 1 if steps > 0 else -1
-        if self.present not in names:
-            return self.choose(names[min(step, 0)])
-        return self.choose(names[(names.index(self.present) + step) % len(names)])
+        names, step = list(self.names or [self.present]), 1 if steps > 0 else -1
+        before = names.index(self.present) if self.present in names else min(-step, 0)
+        return self.choose(names[(before + step) % len(names)])
 
 
-def page_choice(help: str, page: int, pages: int, turn: Callable[[int], object]) -> Choice:
+def page_choice(
+    help: str, page: int, pages: int, turn: Callable[[int], object], label: str = "page", within: str = ""
+) -> Choice:
     """A row that turns pages, counted from 0; `turn` is called with the number of another page."""
     names = [f"{number} of {pages}" for number in range(1, pages + 1)]
     return Choice(
-        "page",
+        label,
         help,
+        within=within,
         names=names,
         present=names[page],
         choose=lambda name: turn(names.index(name)),
@@ -336,92 +349,96 @@ def page_choice(help: str, page: int, pages: int, turn: Callable[[int], object])
 
 
 @dataclass(frozen=True)
-class Entry(Widget):
-    """A text that can be typed over; see `Typed` for a text that is proposed."""
+class Entry(Button):
+    """A text that can be typed over; `take` is called with the new text.
 
-    value: str = ""
+    If it `is_proposed`, Return takes the text even if it was not changed, and a pick elsewhere gives it up.
+    """
+
     take: Callable[[str], Any] = lambda _: None
     is_proposed: bool = False
 
-    @property
-    def typed(self) -> Typed:
-        return Typed(self.value, self.take, self.is_proposed)
 
-    def items(self, lit: bool) -> list[Item]:
-        return self.labeled_row(lit, self.value)
+class Cell(NamedTuple):
+    """A button of a row with several: its text, and whether a pick on it does anything; else it is dim."""
+
+    text: str
+    run: Callable[[], object]
+    is_on: bool = True
+    is_chosen: bool = False
 
 
 @dataclass(frozen=True)
 class Pair(Widget):
-    """Two buttons in one row: `label` names the left one, `other` the right one. Keys pick them by steps."""
+    """Two buttons in one row: `label` names the left one, `other` the right one. Keys pick them by steps.
+
+    A row of more buttons has them in `buttons`.
+    """
 
     run: Callable[[], object] = lambda: None
     other: str = ""
     run_other: Callable[[], object] = lambda: None
     is_chosen: bool = False
     """Whether the left button is chosen."""
-
-    def items(self, lit: bool) -> list[Item]:
-        background = SLATE if lit else NIGHT
-        middle = self._middle
-        items = self.row(
-            lit,
-            fitted(self.label, (middle - self.area.left - MARGIN) // CHARACTER - 1),
-            chosen=self.is_chosen,
-        )
-        edge, top = middle - MARGIN // 2, self.area.top + TEXT_DOWN
-        if self.is_chosen:
-            items.append(filled(self.area._replace(left=edge), background))
-        other = fitted(self.other, (self.area.right + 1 - middle) // CHARACTER)
-        between = Area(edge, top, edge, top + CHARACTER_LINES - 1)
-        return [
-            *items,
-            filled(between, GRAY if lit else SLATE),
-            text(other, middle, top, self.ink, background),
-        ]
+    buttons: Sequence[Cell] = ()
 
     @property
-    def _middle(self) -> int:
-        """Where the right button begins: in the middle, or a letter after it if the left label is long."""
-        left = self.area.left + MARGIN
-        middle = left + (self.area.width - MARGIN) // 2
-        return min(max(middle, left + CHARACTER * (len(self.label) + 1)), middle + CHARACTER)
+    def cells(self) -> Sequence[Cell]:
+        """The buttons, from the left."""
+        is_on = not self.why_not
+        return self.buttons or (
+            Cell(self.label, self.run, is_on, self.is_chosen),
+            Cell(self.other, self.run_other, is_on),
+        )
+
+    @property
+    def _edges(self) -> list[int]:
+        """Where each button begins: at equal distances, or after the text before if that is longer."""
+        edges, cells = [self.area.left], self.cells
+        for number, before in enumerate(cells[:-1], start=1):
+            least = edges[-1] + MARGIN + CHARACTER * len(before.text) + MARGIN - 2
+            edges.append(max(least, self.area.left + number * (self.area.width - MARGIN) // len(cells)))
+        return edges
+
+    def items(self, lit: bool) -> list[Item]:
+        ground, edges = SLATE if lit else NIGHT, self._edges
+        items = [filled(self.area, ground)]
+        for cell, left, end in zip(self.cells, edges, [*edges[1:], self.area.right + 1], strict=True):
+            area = Area(left, self.area.top, end - 1, self.area.bottom)
+            line = Area(left, area.top + TEXT_DOWN, left, area.top + TEXT_DOWN + CHARACTER_LINES - 1)
+            if cell.is_chosen:
+                items.append(filled(area, WHITE))
+            elif left > self.area.left:
+                items.append(filled(line, GRAY if lit else SLATE))
+            ink = BLACK if cell.is_chosen else WHITE if cell.is_on else GRAY
+            back = WHITE if cell.is_chosen else ground
+            items.append(text(cell.text, left + MARGIN, line.top, ink, back))
+        return items
 
     def pick(self, place: Place) -> object:
-        return self.run_other() if place.element >= self._middle - MARGIN // 2 else self.run()
+        number = sum(place.element >= edge for edge in self._edges[1:])
+        return self.cells[number].run()
 
     def nudge(self, steps: float) -> object:
-        return self.run_other() if steps > 0 else self.run()
+        return self.cells[-1 if steps > 0 else 0].run()
 
 
 STEM_LETTERS: Final = 3
 """The fewest letters of a shortened word before its period."""
 
-VOWELS: Final = "aeiou"
-
 
 def short_label(label: str, most: int) -> str:
-    """A label whose longest words are shortened until it has at most `most` characters, if possible.
-
-    A shortened word ends in a consonant and a period.
+    """A label of at most `most` characters. If it is longer, its longest word is shortened to a consonant.
 
     >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
     ('normal refl.', 'x min.', 'cone angle')
     """
-    if len(label) <= most:
+    excess = len(label) - most
+    if excess <= 0:
         return label
-    words = label.split(" ")
-    for number in sorted(range(len(words)), key=lambda each: -len(words[each])):
-        excess = len(" ".join(words)) - most
-        if excess <= 0:
-            break
-        word = words[number]
-        stem = word[: max(STEM_LETTERS, len(word) - excess - 1)]
-        while len(stem) > STEM_LETTERS and stem[-1] in VOWELS:
-            stem = stem[:-1]
-        if len(stem) + 1 < len(word):
-            words[number] = f"{stem}."
-    return " ".join(words)
+    word = max(label.split(" "), key=len)
+    stem = word[: max(STEM_LETTERS, len(word) - excess - 1)].rstrip("aeiou")
+    return fitted(label.replace(word, f"{stem}.", 1), most)
 
 
 def titled(noun: str, name: str) -> str:
@@ -433,13 +450,5 @@ def titled(noun: str, name: str) -> str:
     return name if name.startswith(noun) else f"{noun} {name}"
 
 
-def short_name(name: str, most: int) -> str:
-    """A name of at most `most` characters. Longer names lose their middle, because their ends differ.
-
-    >>> short_name("fender of the left door 12.obj", 16)
-    'fender .. 12.obj'
-    """
-    if len(name) <= most:
-        return name
-    end = max(0, (most - 2) // 2)
-    return f"{name[: max(0, most - 2 - end)]}..{name[len(name) - end :]}"[: max(0, most)]
+short_name: Final = fitted
+"""An older name of `fitted`."""

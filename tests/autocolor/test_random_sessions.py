@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import runpy
 from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import settings
 
 from autocolor import Light, Mesh, Scene, Studio, Surface, read_journal, read_scene, scene_of, write_scene
 from autocolor.journal.autosave import JOURNAL, Autosave
+from autocolor.journal.description import describe_look
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.screens.picture.watching import MESSAGE
@@ -115,6 +117,9 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     hand.let_go()
     viewer.clear()
     studio = viewer.studio
+    # An edit without a change is no step.
+    states = (*studio.history.to_undo, studio.scene, *reversed(studio.history.to_redo))
+    assert all(describe_look(before, after) for before, after in pairwise(states))
     assert viewer.page == PICTURE
     last = held(display)
     assert last == held_by_a_fresh_display(studio.scene)

@@ -344,3 +344,16 @@ def test_a_mesh_is_named_by_the_file_that_it_was_read_from(tmp_path: Path) -> No
     studio.open(tmp_path / "b")
     studio.save_scene(tmp_path / "b" / "variant.toml")
     assert sorted(os.listdir(tmp_path / "b")) == [f"other{mesh.suffix}", "scene.toml", "variant.toml"]
+
+
+def test_to_open_the_file_of_the_present_look_again_is_no_step_and_brings_its_view(tmp_path: Path) -> None:
+    autocolor.write_scene(tmp_path / "car", car())
+    studio = Studio(scene_of(cube()), Ramtek9300(SMALL))
+    mesh = "car/mesh.tables"
+    for path, steps in (("car", 1), ("car", 1), ("car/scene.toml", 1), ("car", 3), (mesh, 4), (mesh, 4)):
+        studio.open(tmp_path / path)
+        assert studio.scene.view.angle == 0
+        assert len(studio.history.to_undo) == steps
+        studio.edit(studio.scene.with_view(angle=3))
+        if path == "car/scene.toml":
+            studio.edit(studio.scene.with_light("key", intensity=0.3))

@@ -127,8 +127,8 @@ def read_foreign(read_as: ForeignFormat, path: Path, placement: Placement = PLAI
             reason = f"it crashed (code {code})"
         except subprocess.TimeoutExpired:
             raise InputError(
-                f"{path.name}: {library} must read it within {seconds:.0f} seconds, for its size, and did"
-                " not; write it as OBJ or PLY, or allow more with --limit (limit= in Python)"
+                f"{path.name}: {library} must read it within {seconds:.0f} seconds, and did not; write it as"
+                " OBJ or PLY, or allow more with --limit"
             ) from None
         except (ValueError, LookupError, TypeError) as error:
             reason = str(error)[:300]

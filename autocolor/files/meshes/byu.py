@@ -51,8 +51,8 @@ def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
     ends = np.flatnonzero(numbers < 0)
     if len(ends) != polygons or numbers[-1] > 0:
         raise InputError(
-            f"{path.name}: there must be {polygons:,} polygons, as the header says, not {len(ends):,}, each"
-            " ended by a negative corner; correct the header or the connectivity"
+            f"{path.name}: there must be {polygons:,} polygons, each ended by a negative corner, not"
+            f" {len(ends):,}; correct the header or the corners"
         )
 
     # Parts.

@@ -102,8 +102,8 @@ def mapped(path: Path, name: str) -> Table:
         except Exception as error:
             # A wrong header makes numpy raise errors of many kinds.
             raise InputError(
-                f"{name}: it must be an .npy file with a table of whole numbers or floating-point numbers,"
-                f" not another file ({printable(str(error)[:200])}); write it with numpy.save"
+                f"{name}: it must be an .npy table of numbers, not another file"
+                f" ({printable(str(error)[:45])}); write it with numpy.save"
             ) from None
     return name, rows
 

@@ -120,8 +120,8 @@ class NumberText:
         """Raise InputError if there are fewer than `end` words; `what` names the last of them."""
         if end > len(self):
             raise InputError(
-                f"{self.place}: there must be {end:,} numbers up to the end of the {what}, not {len(self):,};"
-                " the file is cut short or its counts are wrong"
+                f"{self.place}: there must be {end:,} numbers to the end of the {what}, not {len(self):,};"
+                " it is cut short or its counts are wrong"
             )
 
     def vectors(self, begins: Indices, end: int, width: int = 3) -> Floats:

@@ -58,9 +58,8 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     lines = np.append(lines[lines > 2], len(text))
     if nodes < 1 or polygons < 1 or nodes + polygons >= len(lines):
         raise InputError(
-            f"{path.name}: the header must count nodes and polygons, at least one, each on its own line, not"
-            f" {nodes:,} and {polygons:,} of {len(lines) - 1:,} lines; the file is cut short or its counts"
-            " are wrong"
+            f"{path.name}: the header must count the lines of nodes and polygons, 1 or more, not {nodes:,}"
+            f" and {polygons:,} of {len(lines) - 1:,} lines; export it again"
         )
     begins, end = lines[:nodes], int(lines[nodes])
     widths = np.diff(begins, append=end)

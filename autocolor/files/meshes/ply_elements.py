@@ -83,9 +83,8 @@ def _header(data: bytes, place: str) -> tuple[str, dict[str, tuple[int, Properti
                 properties[name_of(name)] = types
             case _:
                 raise InputError(
-                    f"{place}, line {number}: a line of the header must be a format, a comment, an element"
-                    " with its count or one of its properties with a type of PLY, each with a name of its"
-                    f" own, not {shown(line.strip())}; export it again"
+                    f"{place}, line {number}: a line of the header must be a format, comment, element or"
+                    f" property of PLY, named once, not {shown(line.strip())}; export it again"
                 )
     if order is None:
         raise InputError(f"{place}: a header must have a line 'format', not none; export it again")
@@ -153,13 +152,13 @@ def read_elements(data: bytes, place: str) -> tuple[dict[str, ElementRows], list
             if text is None or not error.args:
                 raise InputError(
                     f"{place}: {rows:,} elements {name!r} must end within the file, with lists of 0 or more"
-                    " values; the file is cut short or its header is wrong, export it again"
+                    " values; export it again"
                 ) from None
             line = text.line(int(bounds[error.args[0]]))
             raise InputError(
-                f"{place}, line {line}: a line of an element {name!r} must have the values of"
-                f" {listed([*islice(properties, 8)] or ['none'])}, with the count before each list, and no"
-                " others; correct it"
+                f"{place}, line {line}: an element {name!r} must have the values of"
+                f" {listed([*islice(properties, 4)] or ['none'])}, the count before each list, and no others;"
+                " correct it"
             ) from None
         elements[name] = ElementRows(rows, columns)
     unit = "bytes" if text is None else "lines"

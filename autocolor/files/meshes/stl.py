@@ -100,7 +100,7 @@ def read_binary(data: bytes, place: str) -> tuple[Singles, list[str]]:
     if size > len(data):
         raise InputError(
             f"{place}: a binary STL file of {count:,} triangles must have {size:,} bytes, not {len(data):,};"
-            " it is cut short or of another format, export it again"
+            " export it again"
         )
     corners = np.array(np.frombuffer(data, TRIANGLE, count, BEFORE_TRIANGLES)["corners"]).reshape(-1, 3)
     # A comparison with NaN is false. The bound is rounded to float32 as the coordinates are.
@@ -245,7 +245,8 @@ def _refuse(text: bytes, line: int, place: str) -> NoReturn:
         if not is_right:
             break
     line += text.count(b"\n", 0, match.start())
+    expected = "a number of at most 1e30 in size" if number in COORDINATES else repr(wanted.decode())
     raise InputError(
-        f"{place}, line {line}: a facet must be {FACET!r} (here {wanted.decode()!r}), with numbers of at most"
-        f" 1e30 in size for the points, not {shown(word) if word else 'end'}; correct it"
+        f"{place}, line {line}: a facet must have {expected} here, not {shown(word) if word else 'its end'};"
+        " correct it"
     )

@@ -63,8 +63,8 @@ def parsed_toml(data: bytes, place: str, what: str = "a scene file") -> dict[str
         if nested > MOST_NESTED or parts > MOST_KEY_PARTS or is_long:
             raise InputError(
                 f"{place}, line {text.count(chr(10), 0, token.start()) + 1}: {what} must have at most"
-                f" {MOST_NESTED} brackets in each other, {MOST_KEY_PARTS} parts between the dots of a key and"
-                f" {LONGEST_WORD} letters or digits without quotes, not more; write it simpler"
+                f" {MOST_NESTED} nested brackets, {MOST_KEY_PARTS} parts of a key and words of {LONGEST_WORD}"
+                " letters; write it simpler"
             )
     try:
         return tomllib.loads(text)

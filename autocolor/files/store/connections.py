@@ -123,8 +123,8 @@ def replacing(path: Path, check: Callable[[], None]) -> Iterator[tuple[bytes, Ca
     before = status_of(path)
     if not os.access(path, os.W_OK):
         raise OutputError(
-            f"{path.name}: a store must let itself be written to be changed, and is write-protected; change"
-            " its permissions, or write to another file"
+            f"{path.name}: a store must not be write-protected to be changed; change its permissions, or"
+            " write to another file"
         )
     with refusals(path.name, WriteError), closing(_opened(path, is_written=True)) as file:
         file.execute("BEGIN IMMEDIATE")
@@ -175,9 +175,8 @@ def files_to_play(path: Path) -> list[str]:
             file.seek(max(0, status.st_size - len(JOURNAL_MAGIC)))
             if ending == "-journal" and file.read() == JOURNAL_MAGIC:
                 raise InputError(
-                    f"{path.name}: the -journal beside the store names another file, which SQLite deletes"
-                    " when it rolls the journal back; if you trust both files, open the store once with"
-                    " `sqlite3 FILE .tables`, otherwise move the journal away"
+                    f"{path.name}: its -journal names another file, which SQLite deletes; if you trust both,"
+                    " run `sqlite3 FILE .tables`, otherwise move the journal away"
                 )
     return endings
 

@@ -130,7 +130,7 @@ def _with_additions(old: sqlite3.Connection, scene: Scene, name: str) -> bytes:
         return old.serialize()
     except sqlite3.Error as error:
         raise WriteError(
-            f"{name}: what other programs added to a store must fit the tables of the scene, and does not"
+            f"{name}: what other programs added must fit the tables of the scene, and does not"
             f" ({printable(str(error))}); drop it, or write to another file"
         ) from None
 

@@ -157,8 +157,8 @@ class Tables:
             try:
                 for (trigger,) in copy.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'"):
                     raise WriteError(
-                        f"{self._name}: a store that is changed must have no triggers, and this one has"
-                        f" trigger {shown(trigger)}; drop it, or write the scene to another file"
+                        f"{self._name}: a store that is changed must have no triggers, not"
+                        f" {shown(trigger)}; drop it, or write the scene to another file"
                     )
                 for begin in ("PRAGMA foreign_keys = ON", "BEGIN", "PRAGMA defer_foreign_keys = ON"):
                     copy.execute(begin)

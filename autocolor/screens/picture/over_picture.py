@@ -8,6 +8,7 @@ from functools import partial
 from typing import ClassVar, Final, NamedTuple
 
 from autocolor.checks import Color
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.intensity import held_name
 from autocolor.mapping.legend import CORNERS, Corner, Legend, legend
 from autocolor.scene.defaults import TRIMMED
@@ -40,7 +41,7 @@ class OverPicture(Screen):
 
     def build(self, around: Surroundings) -> Content:
         """The picture with the legend of a scalar, and the gestures that turn it."""
-        other, present = self.session.comparing.image, self.session.studio.display_image
+        other, present = self.other_image(around), self.session.studio.display_image
         image = other or present
 
         def draw() -> tuple[Sequence[Item], Sequence[Handle]]:
@@ -63,6 +64,10 @@ class OverPicture(Screen):
             drag=self.drag,
             wheel=self.wheel,
         )
+
+    def other_image(self, around: Surroundings) -> DisplayImage | None:
+        """The image that is shown in place of the present one; None for the present one."""
+        return self.session.comparing.image
 
     def hint(self, element: int, line: int) -> str:
         """The surface, the part and the level at a place."""

@@ -51,7 +51,7 @@ class PictureScreen(OverPicture):
             had_marks, self._has_marks = self._has_marks, may_mark
             return may_mark != had_marks
 
-        marks = self._handles.items(numbered=True) if self._has_marks and may_mark else ()
+        marks = self._handles.items() if self._has_marks and may_mark else ()
         return replace(
             content,
             items=[*content.items, *marks],

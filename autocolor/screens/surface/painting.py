@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final, Unpack
+from typing import Any, Final, NamedTuple, Unpack
+
+import numpy as np
 
 from autocolor.arrays import half_up
+from autocolor.checks import Color
 from autocolor.errors import UsageError
-from autocolor.mapping.colors import entries_of
+from autocolor.mapping.colors import entries_at, entries_of
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.defaults import OBJECT_COLORS
 from autocolor.scene.kinds import in_digits
@@ -20,32 +23,87 @@ from autocolor.screens.session import Session
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Switch, Widget
 
+TWO_COLORS: Final = ("object", "light source")
+"""The names of the two colors of a paint for users, in the order of their numbers."""
+
+
+class PaintColor(NamedTuple):
+    """A color of a paint: the object color, number 0, the light color, number 1, or a color of the ramp."""
+
+    paint: Paint
+    number: int
+
+    @property
+    def color(self) -> Color:
+        """The color itself."""
+        return colors_of(self.paint)[self.number]
+
+    @property
+    def label(self) -> str:
+        """The label of the color: "object", or "color 2" of a ramp."""
+        return TWO_COLORS[self.number] if self.paint.ramp is None else f"color {self.number + 1}"
+
+    @property
+    def name(self) -> str:
+        """The color in a sentence: "the object color", or "color 2 of 5"."""
+        ramp = self.paint.ramp
+        return f"the {self.label} color" if ramp is None else f"{self.label} of {len(ramp)}"
+
+    def change(self, color: Sequence[int] | str) -> PaintChanges:
+        """The change of the paint that puts another color in its place."""
+        ramp, number = self.paint.ramp, self.number
+        if ramp is not None:
+            return {"ramp": (*ramp[:number], color, *ramp[number + 1 :])}
+        return {"light_color": color} if number else {"object_color": color}
+
+
+def colors_of(paint: Paint) -> tuple[Color, ...]:
+    """The colors of a ramp, or the object color and the light color."""
+    return paint.ramp or (paint.object_color, paint.light_color)
+
+
+def with_moved_color(ramp: tuple[Color, ...], number: int, to: int) -> list[list[int]]:
+    """The ramp with a color at another place among as many colors; both are numbers from 0.
+
+    The parts of the ramp below and above the color are stretched or shortened evenly, and give the others.
+
+    >>> with_moved_color(((0, 0, 0), (30, 30, 30), (60, 60, 60), (0, 0, 90)), 1, 2)
+    [[0, 0, 0], [15, 15, 15], [30, 30, 30], [0, 0, 90]]
+    """
+    last = len(ramp) - 1
+    below = np.interp(range(to), [0, to], [0, number])
+    above = np.interp(range(to + 1, last + 1), [to, last], [number, last])
+    fractions = np.float32(1 / last) * np.array([*below, number, *above], np.float32)
+    colors: list[list[int]] = entries_at(Paint(ramp=ramp), fractions, len(ramp)).tolist()
+    return colors
+
 
 def change_paint(
     session: Session, message: Callable[[Paint], str] | None = None, /, **changes: Unpack[PaintChanges]
 ) -> None:
     """Change the colors of the chosen surface, if there is one, and show a message about its new paint.
 
-    If two colors replace a ramp, colors and blend are as before the ramp, if this session gave it, else
+    If two colors replace a ramp, colors and blend are as before the ramp, if there are steps before it, else
     the color in its middle and its last color, unless they are given.
     """
-    if session.surface_name:
-        present = session.scene.surfaces[session.surface_name].paint
+    name = session.surface_name
+    if name:
+        present = session.scene.surfaces[name].paint
         if present.ramp is not None and changes.get("ramp") is None:
-            mesh, before = session.blended.get(session.surface_name, (None, present))
-            if mesh is not session.scene.mesh:
-                before = Paint(present.color, present.ramp[-1])
-            scene = session.scene.with_surface(session.surface_name, paint=before.replace(**changes))
+            middle = Paint(present.color, present.ramp[-1])
+            earlier = reversed(session.studio.history.earlier)
+            paints = (row.paint for scene in earlier for row in scene.surfaces if row.name == name)
+            before = next((paint for paint in paints if paint.ramp is None), middle)
+            scene = session.scene.with_surface(name, paint=before.replace(**changes))
         else:
-            scene = session.scene.with_paint(session.surface_name, **changes)
-        edit_paint(session, scene, message(scene.surfaces[session.surface_name].paint) if message else "")
+            scene = session.scene.with_paint(name, **changes)
+        edit_paint(session, scene, message(scene.surfaces[name].paint) if message else "")
 
 
-def finish(session: Session, name: str) -> None:
-    """Give the chosen surface a finish. Raises UsageError for an unknown finish."""
+def with_finish(session: Session, name: str) -> Scene:
+    """The scene with a finish of the chosen surface. Raises UsageError for an unknown finish."""
     surface = session.scene.surfaces[session.surface_name]
-    scene = session.scene.with_surface(surface.name, **finished(surface, name))
-    edit_paint(session, scene, f"{surface.name}: {name}")
+    return session.scene.with_surface(surface.name, **finished(surface, name))
 
 
 def edit_paint(session: Session, scene: Scene, message: str) -> None:
@@ -55,9 +113,6 @@ def edit_paint(session: Session, scene: Scene, message: str) -> None:
     chosen = f"{session.surface_name}: " if message else ""
     messages = [message, *(each.removeprefix(chosen) for each in unset_paints(before, scene))]
     session.edit(scene)
-    for old, new in zip(before.surfaces, scene.surfaces, strict=True):
-        if old.paint.ramp is None and new.paint.ramp is not None:
-            session.blended[old.name] = before.mesh, old.paint
     if any(messages):
         session.tell("; ".join(filter(None, messages)))
 

@@ -35,7 +35,7 @@ def store(folder: Path) -> Path:
     ],
 )
 def test_a_command_refuses_the_store(refused: Refused, store: Path, line: str, code: int) -> None:
-    assert refused(line, code).startswith("small.sqlite: the -journal beside the store")
+    assert refused(line, code).startswith("small.sqlite: its -journal names another file")
 
 
 @pytest.mark.parametrize(

@@ -124,7 +124,7 @@ def test_any_name_becomes_a_file_in_the_folder_where_it_is_put(name: str) -> Non
 
 @pytest.mark.parametrize("name", ["", ".hidden", "a/b", "\u202ea", "x" * 101])
 def test_a_name_that_cannot_be_the_stem_of_a_listed_file_is_refused(name: str) -> None:
-    with pytest.raises(UsageError, match=r"^a file name must be 1 to 100 characters, .*; choose another$"):
+    with pytest.raises(UsageError, match=r"^a name must be 1 to 100 characters, .*; choose another$"):
         check_stem(name)
 
 

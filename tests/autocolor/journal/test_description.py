@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from autocolor import Scene
+from autocolor import Flap, Flaps, Scene
 from autocolor.journal.description import describe
 from autocolor.scene.columns import with_values
 from tests.autocolor.scene.test_every_column import EDITS, ROWS, edited, every_column, start
@@ -56,6 +56,7 @@ def test_equal_scenes_have_no_difference() -> None:
 
 
 SCENES = {
+    "key: flaps x on": start().with_light("key", flaps=Flaps(x=Flap())),
     "key: intensity 1 -> 0.8": start().with_light("key", intensity=0.8),
     "key: intensity 1 -> 1.00001": start().with_light("key", intensity=1.00001),
     "key: position z 3 -> 2.5": start().with_light("key", position=(2, -4, 2.5)),

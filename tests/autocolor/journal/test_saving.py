@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 
 import autocolor
 from autocolor import OutputError, Studio, UsageError, WriteError, read_picture, read_scene, write_picture
+from autocolor.files.paths import PACKAGE
 from autocolor.journal.history import History
-from autocolor.journal.places import PACKAGE, ScenePlace, Source, opened
+from autocolor.journal.places import ScenePlace, Source, opened
 from autocolor.journal.saving import SavedFiles
 from ramtek_emu import Ramtek9300
 from tests.small import SMALL, car
@@ -108,7 +109,7 @@ def test_a_name_that_a_file_has_is_refused_and_nothing_is_written(
 @pytest.mark.parametrize("name", ["", "a/b"])
 def test_an_invalid_name_is_refused_and_nothing_is_written(work: Path, name: str) -> None:
     studio = Studio(car(), Ramtek9300(SMALL))
-    with pytest.raises(UsageError, match="a file name must be"):
+    with pytest.raises(UsageError, match="a name must be"):
         studio.save_session(work, name)
     assert not list(work.parent.rglob("*.npz"))
     assert list(work.iterdir()) == []

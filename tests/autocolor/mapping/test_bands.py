@@ -223,14 +223,13 @@ test_too_many_bands_are_refused_with_the_words_left_and_a_remedy = refused(
     [
         (
             panes(2, bands=64, shades=8),
-            "surface 'pane 0' and 1 more: the bands of scalar 'stress' times their shades must be at most the"
-            " 1007 words that are left for them, not 128 x 8 = 1024; choose at most 7 shades, or fewer bands",
+            "surface 'pane 0' and 1 more: bands times shades must be at most 1007, the words that are left,"
+            " not 128 x 8 = 1024; choose at most 7 shades, or fewer bands",
         ),
         (
             panes(5, bands=256),
-            "surface 'pane 0' and 4 more: the bands of scalar 'stress' times their shades must be at most the"
-            " 1007 words that are left for them, not 1280 x 1 = 1280; even one shade of each needs 1280;"
-            " choose fewer bands, or let it color fewer surfaces",
+            "surface 'pane 0' and 4 more: bands times shades must be at most 1007, the words that are left,"
+            " not 1280 x 1 = 1280; choose fewer bands, or color fewer surfaces",
         ),
     ],
     InputError,

@@ -145,8 +145,8 @@ test_what_is_refused = refused(
     [
         (
             lambda: level_ranges(rows([600, 500, None]), {f"surface {row}": 1 for row in range(3)}),
-            "surface 'surface 0': the levels of all surfaces must be at most 1007, with 2 for every surface"
-            " without a number, not 1100 and 1 such surfaces; ask for fewer levels",
+            "surface 'surface 0': all levels must be at most 1007, 2 for each surface without a number,"
+            " not 1100 and 1 such; ask for fewer levels",
         ),
         *(
             (

@@ -21,10 +21,6 @@ from autocolor.screens.input import (
 from ramtek_emu import Ramtek9300
 
 
-def kinds(gestures: list[Gesture]) -> list[str]:
-    return [each.kind for each in gestures]
-
-
 def test_the_degrees_of_a_drag_do_not_depend_on_its_steps() -> None:
     places, total = [(100, 100), (130, 90), (90, 140), (160, 80)], [0.0, 0.0]
     for before, after in pairwise(places):
@@ -33,37 +29,45 @@ def test_the_degrees_of_a_drag_do_not_depend_on_its_steps() -> None:
     assert total == pytest.approx(turn_between(*places[0], *places[-1]))
 
 
+def acts(mouse: Mouse, element: int, action: str, button: int = LEFT) -> list[tuple[str, int, int]]:
+    """The kinds, the elements and the buttons of the gestures of an action with Shift."""
+    gestures = mouse.gestures(action, Gesture("hover", element, 10, button, shift=True))
+    assert all(each.shift for each in gestures)
+    return [(each.kind, each.element, each.button) for each in gestures]
+
+
 def test_a_click_is_a_pick_even_if_the_hand_is_not_quite_still() -> None:
     mouse = Mouse()
-    assert mouse.gestures(10, 10, "press", LEFT) == []
-    assert mouse.gestures(10 + SLOP, 10 - SLOP, "move") == []
-    (pick,) = mouse.gestures(10 + SLOP, 10 - SLOP, "release", LEFT)
-    assert (pick.kind, pick.element, pick.line) == ("pick", 10 + SLOP, 10 - SLOP)
+    assert acts(mouse, 10, "press") == acts(mouse, 10 + SLOP, "move") == []
+    assert acts(mouse, 10 + SLOP, "release") == [("pick", 10 + SLOP, LEFT)]
 
 
 def test_a_drag_is_grabbed_where_the_button_was_pressed_and_dropped_at_its_release() -> None:
     mouse = Mouse()
-    mouse.gestures(10, 10, "press", MIDDLE, shift=True)
-    grab, drag = mouse.gestures(20, 10, "move")
-    assert (grab.kind, grab.element, grab.button, grab.shift) == ("grab", 10, MIDDLE, True)
-    assert (drag.kind, drag.element, drag.button) == ("drag", 20, MIDDLE)
+    acts(mouse, 10, "press", MIDDLE)
+    assert acts(mouse, 20, "move") == [("grab", 10, MIDDLE), ("drag", 20, MIDDLE)]
     # Back within the slop it is a drag still.
-    assert kinds(mouse.gestures(10, 10, "move")) == ["drag"]
-    assert mouse.gestures(10, 10, "release", LEFT) == []
-    assert kinds(mouse.gestures(10, 10, "release", MIDDLE)) == ["drop"]
-    assert kinds(mouse.gestures(10, 10, "move")) == ["hover"]
+    assert acts(mouse, 10, "move") == [("drag", 10, MIDDLE)]
+    assert acts(mouse, 10, "release", LEFT) == []
+    assert acts(mouse, 10, "release", MIDDLE) == [("drop", 10, MIDDLE)]
+    assert acts(mouse, 10, "move") == [("hover", 10, LEFT)]
     # The middle button has no clicks.
-    mouse.gestures(10, 10, "press", MIDDLE)
-    assert mouse.gestures(10, 10, "release", MIDDLE) == []
+    acts(mouse, 10, "press", MIDDLE)
+    assert acts(mouse, 10, "release", MIDDLE) == []
 
 
 def test_a_button_that_is_forgotten_drags_no_more() -> None:
     mouse = Mouse()
-    mouse.gestures(10, 10, "press", LEFT)
-    mouse.gestures(30, 10, "move")
+    acts(mouse, 10, "press")
+    acts(mouse, 30, "move")
     mouse.forget()
-    assert kinds(mouse.gestures(40, 10, "move")) == ["hover"]
-    assert mouse.gestures(40, 10, "release", LEFT) == []
+    assert acts(mouse, 40, "move") == [("hover", 40, LEFT)]
+    assert acts(mouse, 40, "release") == []
+
+
+@pytest.mark.parametrize(("action", "steps"), [("wheel up", 3.0), ("wheel down", -3.0)])
+def test_a_wheel_turns_by_its_steps(action: str, steps: float) -> None:
+    assert Mouse().gestures(action, Gesture("hover", 10, 10, steps=3.0))[0].steps == steps
 
 
 @pytest.mark.parametrize(

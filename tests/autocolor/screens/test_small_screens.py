@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -11,21 +12,11 @@ from hypothesis import strategies as st
 from autocolor.errors import UsageError
 from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
 from autocolor.screens.cached import Cached
-from autocolor.screens.entries_screen import (
-    CELL_HEIGHT,
-    CELL_WIDTH,
-    SIDE,
-    cell_words,
-    named_cells,
-)
-from autocolor.screens.help_screen import LEFT, MIDDLE, ROWS_A_PAGE, STEP, TITLE, TOP, help_items
+from autocolor.screens.entries_screen import CELL_HEIGHT, CELL_WIDTH, SIDE, cell_words, named_cells
+from autocolor.screens.help_screen import LIMITS
 from autocolor.screens.keys import rows_of_help
-from autocolor.screens.message_line import (
-    MESSAGE,
-    MessagePart,
-    lines_of_message,
-    message_items,
-)
+from autocolor.screens.message_line import MESSAGE, MessagePart, lines_of_message, message_items
+from autocolor.screens.pages import LEFT, MIDDLE, ROWS_A_PAGE, STEP, TOP
 from autocolor.screens.screen import Content
 from autocolor.screens.session import LastEdit
 from autocolor.screens.tutorial import Tutorial
@@ -42,43 +33,36 @@ from tests.small import boxes, wall_scene
 ROWS = rows_of_help()
 
 
-@pytest.mark.parametrize("count", [0, 1, ROWS_A_PAGE, ROWS_A_PAGE + 1, len(ROWS), 100])
-def test_every_row_is_on_a_page_and_nothing_overlaps(count: int) -> None:
+@pytest.mark.parametrize("count", [0, ROWS_A_PAGE - 3, len(ROWS), 100])
+def test_pages_of_text_have_every_row_and_are_turned_by_the_unit_the_wheel_and_keys(
+    tmp_path: Path, count: int
+) -> None:
+    hand = Hand(Viewer(wall_scene(), Ramtek9300(), tmp_path))
     rows = [ROWS[number % len(ROWS)] for number in range(count)]
-    for page in range(max(1, -(-count // ROWS_A_PAGE))):
-        items = help_items(TITLE, rows, page)
-        for number, item in enumerate(items):
-            assert SCREEN.covers(item.area)
-            assert not MESSAGE.overlaps(item.area)
-            assert not any(item.area.overlaps(other.area) for other in items[:number])
+    hand.viewer.session.keys = rows
+    hand.press("F1")
+    turns = (
+        lambda: hand.click(300, 200),
+        lambda: hand.viewer.on_pointer(300, 200, "wheel down"),
+        lambda: hand.press("space"),
+        lambda: hand.press("page down"),
+    )
+    pages = -(-(count + 1 + len(LIMITS)) // ROWS_A_PAGE)
+    shown = []
+    for page in range(pages):
+        items = hand.viewer.board.content.items
+        shown.append(items)
+        assert all(SCREEN.covers(item.area) and not MESSAGE.overlaps(item.area) for item in items)
+        assert not any(one.area.overlaps(other.area) for one, other in combinations(items, 2))
         for number, (keys, does) in enumerate(rows[page * ROWS_A_PAGE :][:ROWS_A_PAGE]):
             top = TOP + STEP * number
             assert text(keys, LEFT, top, ORANGE) in items
             assert text(does, MIDDLE, top, WHITE) in items
-
-
-def test_the_rows_are_plain_text() -> None:
-    assert all(keys.isascii() and does.isascii() for keys, does in ROWS)
-
-
-def test_pages_are_turned_by_the_unit_the_wheel_and_keys(tmp_path: Path) -> None:
-    viewer = Viewer(wall_scene(), Ramtek9300(), tmp_path)
-    hand = Hand(viewer)
-    viewer.session.keys = ROWS * 3
-    pages = -(-len(viewer.session.keys) // ROWS_A_PAGE)
-    viewer.on_key("f1")
-    shown = []
-    for turn in (
-        lambda: hand.click(300, 200),
-        lambda: viewer.on_pointer(300, 200, "wheel down"),
-        lambda: viewer.on_key("space", typed=" "),
-    ):
-        shown.append(viewer.board.content.items)
-        turn()
-    assert len({str(items) for items in shown}) == 3
-    for _ in range(pages - 3):
-        hand.click(300, 200)
-    assert viewer.board.content.items == shown[0]
+        turns[page]()
+    # After the last page comes the first, and before the first the last.
+    assert hand.viewer.board.content.items == shown[0]
+    hand.press("page up")
+    assert hand.viewer.board.content.items == shown[-1]
 
 
 RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}
@@ -89,58 +73,42 @@ def owner(word: int) -> str:
         return "background"
     if word >= SCREENS.first:
         return "screens"
-    return next(
-        (name for name, (first, levels) in RANGES.items() if first <= word < first + levels), "nobody"
-    )
+    return next((name for name, levels in RANGES.items() if levels.first <= word <= levels.last), "nobody")
 
 
-def cell(word: int) -> tuple[slice, slice]:
-    line, element = divmod(word, SIDE)
-    return slice(line * CELL_HEIGHT, (line + 1) * CELL_HEIGHT), slice(
-        element * CELL_WIDTH, (element + 1) * CELL_WIDTH
-    )
-
-
-def test_every_cell_shows_its_own_word() -> None:
+def test_every_cell_shows_its_own_word_and_a_line_runs_between_different_owners() -> None:
     page = cell_words(tuple(RANGES.values()))
     assert page.shape == (480, 640)
     for word in range(1024):
-        inner = page[cell(word)][1:-1, 1:-1]
-        assert (inner == word).all()
-
-
-@pytest.mark.parametrize("word", [0, 1, 31, 32, 33, 500, 501, 532, 540, 541, 1007, 1008, 1023])
-def test_a_line_runs_between_cells_of_different_owners(word: int) -> None:
-    page = cell_words(tuple(RANGES.values()))[cell(word)]
-    line, element = divmod(word, SIDE)
-    edges = (
-        (line > 0, -SIDE, page[0, 1:-1]),
-        (line < SIDE - 1, SIDE, page[-1, 1:-1]),
-        (element > 0, -1, page[1:-1, 0]),
-        (element < SIDE - 1, 1, page[1:-1, -1]),
-    )
-    for has_neighbor, step, edge in edges:
-        apart = has_neighbor and owner(word) != owner(word + step)
-        assert (edge == (YELLOW if apart else word)).all()
+        line, element = divmod(word, SIDE)
+        cell = page[line * CELL_HEIGHT :, element * CELL_WIDTH :][:CELL_HEIGHT, :CELL_WIDTH]
+        assert (cell[1:-1, 1:-1] == word).all()
+        edges = (
+            (line > 0, -SIDE, cell[0, 1:-1]),
+            (line < SIDE - 1, SIDE, cell[-1, 1:-1]),
+            (element > 0, -1, cell[1:-1, 0]),
+            (element < SIDE - 1, 1, cell[1:-1, -1]),
+        )
+        for has_neighbor, step, edge in edges:
+            apart = has_neighbor and owner(word) != owner(word + step)
+            assert (edge == (YELLOW if apart else word)).all()
 
 
 @given(st.lists(st.tuples(st.text("abc", min_size=1, max_size=30), st.integers(2, 300)), max_size=6))
 def test_a_name_stands_within_the_cells_of_its_range(rows: list[tuple[str, int]]) -> None:
-    ranges, first = {}, 1
-    for name, levels in rows:
-        if first + levels <= SCREENS.first and name not in ranges:
-            ranges[name] = LevelRange(first, levels)
-            first += levels
-    named = list(named_cells(ranges))
-    assert len(named) == len(ranges) + 1
-    for (name, line, element), (whole, (start, levels)) in zip(
-        named, [*ranges.items(), ("screens", SCREENS)], strict=True
-    ):
+    ranges: dict[str, LevelRange] = {}
+    first = 1
+    for owner, count in rows:
+        if first + count <= SCREENS.first and owner not in ranges:
+            ranges[owner] = LevelRange(first, count)
+            first += count
+    named = {**ranges, "screens": SCREENS}
+    for (name, line, element), whole, levels in zip(named_cells(ranges), named, named.values(), strict=True):
         width = len(name) * CHARACTER + 3
         cells = range(line * SIDE + element, line * SIDE + element - (-width // CELL_WIDTH))
-        assert set(cells) <= set(range(start, start + levels))
-        assert element * CELL_WIDTH + width <= 640
-        assert whole == name or name.rstrip(".") == whole[: len(name.rstrip("."))]
+        assert set(cells) <= set(range(levels.first, levels.last + 1))
+        assert element * CELL_WIDTH + width <= WIDTH
+        assert len(name) <= len(whole)
 
 
 def test_a_message_that_fits_fills_its_line_and_nothing_else() -> None:
@@ -150,6 +118,7 @@ def test_a_message_that_fits_fills_its_line_and_nothing_else() -> None:
         display.send(np.frombuffer(item.stream, np.uint16))
     assert not display.words[: MESSAGE.top].any()
     assert set(np.unique(display.words[MESSAGE.top :])) == {BLACK, WHITE}
+    assert message_items([MessagePart("", WHITE)]) == [filled(MESSAGE, BLACK)]
 
 
 @pytest.mark.parametrize("end", [WIDTH, MENU.left])
@@ -175,11 +144,6 @@ def test_a_typed_text_is_shown_whole_or_to_its_end_with_its_selection(
         assert "".join(row.text[row.selected :] for row in rows) == text
     else:
         assert shown == ".." + line[2 - 2 * most :]
-
-
-def test_an_empty_message_is_an_empty_line() -> None:
-    assert message_items([MessagePart("", WHITE)]) == [filled(MESSAGE, BLACK)]
-    assert text("a", 8, MESSAGE.top + 3, WHITE, BLACK) in message_items([MessagePart("a", WHITE)])
 
 
 @pytest.mark.parametrize(
@@ -222,50 +186,39 @@ def test_a_screen_without_colors_refuses_to_take_a_color() -> None:
         Content().take_color("red", 1, 1)
 
 
-def test_a_cached_value_is_computed_once_for_the_same_sources() -> None:
-    cached: Cached[list[int]] = Cached()
-    source = [1]
-    first = cached.of(lambda: [2], source, "a")
-    assert first == [2]
-    assert cached.of(lambda: [3], source, "a") is first
-    # An equal source is another one.
-    assert cached.of(lambda: [3], [1], "a") == [3]
-    assert cached.of(lambda: [4], [1], source) == [4]
-    assert cached.of(lambda: [5]) == [5]
-
-
-def test_a_failed_computation_is_not_cached() -> None:
+def test_a_value_is_computed_once_for_the_same_sources_and_again_if_it_failed() -> None:
     cached: Cached[float] = Cached()
-    for _ in range(2):
-        try:
-            cached.of(lambda: 1 / 0, "a")
-        except ZeroDivisionError:
-            continue
-        raise AssertionError
-    assert cached.of(lambda: 1.0, "a") == 1.0
+    source = [1]
+    with pytest.raises(ZeroDivisionError):
+        cached.of(lambda: 1 / 0, source, "a")
+    assert [cached.of(lambda value=value: value, source, "a") for value in (2, 3)] == [2, 2]  # type: ignore[misc]
+    # An equal source is another source.
+    assert cached.of(lambda: 4, [1], "a") == 4
+    assert cached.of(lambda: 5, [1]) == 5
+    assert cached.of(lambda: 6) == 6
 
 
 # What every screen draws over its base, as checksums: a golden of places, inks, labels and numerals.
 # If a screen changes on purpose, look at it, and copy the new number from the failure.
 
 PAGES = {
-    "picture": 2052908064,
-    "light and view": 4096469850,
-    "lights": 98689812,
-    "reflectance": 2277921197,
-    "mixing": 81988555,
-    "blending": 3452372454,
-    "mapping": 2313681486,
-    "scalar": 2182566568,
-    "variants": 1934862611,
-    "history": 2289736666,
-    "file": 632776705,
+    "picture": 3004830101,
+    "light and view": 2076956024,
+    "lights": 185925428,
+    "reflectance": 3909965867,
+    "mixing": 3292494096,
+    "blending": 1030285353,
+    "mapping": 2980384995,
+    "scalar": 1277672108,
+    "variants": 1031639035,
+    "history": 2038959727,
+    "file": 3016242762,
     "explain": 1098717020,
     "split": 927769705,
-    "entries": 1718922199,
-    "sent": 2717923104,
-    "help": 2044210532,
-    "tutorial": 1848368743,
+    "entries": 2831939804,
+    "sent": 3012791792,
+    "help": 3885588141,
+    "tutorial": 1724108118,
 }
 
 

@@ -10,26 +10,21 @@ from hypothesis import strategies as st
 from autocolor.arrays import Booleans
 from autocolor.widgets.items import (
     DOWN,
-    DRAWABLE,
     LEFT,
     RIGHT,
     UP,
     WHITE,
     Area,
     Item,
-    SmallPicture,
     area_of,
     between,
     clipped,
-    drawn,
     filled,
     image,
-    joined,
     lines,
     outline,
     pointer,
     text,
-    together,
 )
 from ramtek_emu import PRINCETON_9300, Ramtek9300, instructions
 from tests.autocolor.widgets.drawing import TINY, areas, draw_items, items
@@ -53,24 +48,15 @@ def inside(area: Area, display: Ramtek9300) -> Booleans:
     return found
 
 
-@given(items())
-def test_an_item_changes_no_pixel_outside_its_area(item: Item) -> None:
-    for ground in (UNUSED, 0):
-        display = painted(item, ground=ground)
-        assert (display.words[~inside(item.area, display)] == ground).all()
-
-
-@given(items())
-def test_a_solid_item_draws_every_pixel_of_its_area(item: Item) -> None:
-    one, other = painted(item, ground=UNUSED), painted(item, ground=0)
-    if item.is_solid:
-        within = inside(item.area, one)
-        assert np.array_equal(one.words[within], other.words[within])
-
-
 @given(items(), st.lists(items(), max_size=4))
-def test_an_item_draws_the_same_in_any_company(item: Item, before: list[Item]) -> None:
-    assert np.array_equal(painted(item).words, painted(item, *before).words)
+def test_an_item_draws_its_area_alone_and_the_same_in_any_company(item: Item, before: list[Item]) -> None:
+    shown, over_black = painted(item, *before), painted(item, ground=0)
+    within = inside(item.area, shown)
+    assert (shown.words[~within] == UNUSED).all()
+    assert np.array_equal(painted(item).words, shown.words)
+    # A solid item draws every pixel of its area.
+    assert not item.is_solid or np.array_equal(shown.words[within], over_black.words[within])
+    assert item.word is None or (shown.words[within] == item.word).all()
 
 
 @given(items())
@@ -106,8 +92,7 @@ def test_a_line_of_any_length_keeps_its_slope() -> None:
 
 def test_an_image_is_shown_word_by_word_also_across_the_edge() -> None:
     words = np.arange(60, dtype=np.uint16).reshape(6, 10)
-    display = painted(image(words, -4, -2))
-    assert np.array_equal(display.words[:4, :6], words[2:, 4:])
+    assert np.array_equal(painted(image(words, -4, -2)).words[:4, :6], words[2:, 4:])
 
 
 @pytest.mark.parametrize("place", [-1_000_000, 1_000_000])
@@ -123,9 +108,8 @@ def test_what_is_beyond_every_display_draws_nothing(place: int) -> None:
     assert image(np.zeros((2, 2), np.uint16), place, place).stream == b""
 
 
-def test_an_area_larger_than_what_can_be_told_fills_the_display() -> None:
+def test_an_area_larger_than_every_display_fills_the_display() -> None:
     assert (painted(filled(Area(-100_000, -100_000, 100_000, 100_000), 5)).words == 5).all()
-    assert DRAWABLE.covers(filled(Area(-100_000, 0, 100_000, 9), 5).area)
 
 
 def test_the_area_of_points_has_a_margin_within_a_limit() -> None:
@@ -192,20 +176,6 @@ def test_strokes_of_any_size_end_within_the_area() -> None:
     assert (found <= np.tile([AREA.right, AREA.bottom], 2)).all()
 
 
-def test_drawn_strokes_go_from_pixel_to_pixel_and_none_twice() -> None:
-    strokes = np.array([(0.4, 0.5, 9.6, 0.4), (10.2, -0.5, 0.49, 1.0), (10, 0, 0, 1), (3, 3, 3.2, 3.1)])
-    assert drawn(strokes).tolist() == [[10, 0, 0, 1]]
-    strokes = np.array([(5.0, 5, 3, 5), (3, 5, 5, 5), (3, 5, 6, 5)])
-    assert drawn(strokes).tolist() == [[3, 5, 5, 5], [3, 5, 6, 5]]
-    assert drawn(np.array([(4.1, 4.1, 4.2, 4.2), (4.2, 4.2, 4.1, 4.1)])).tolist() == [[4, 4, 4, 4]]
-    # Of too many strokes the longest are drawn.
-    strokes = np.array([(0, line, line + 1, line) for line in range(100)], np.float64)
-    assert drawn(strokes, most=10).tolist() == strokes[90:].tolist()
-    for nothing in (drawn(np.empty((0, 4))), clipped(np.empty((0, 4)), AREA), together([]), joined([(1, 2)])):
-        assert nothing.shape == (0, 4)
-    assert joined([(1, 2), (3, 4), (5, 6)]).tolist() == [[1, 2, 3, 4], [3, 4, 5, 6]]
-
-
 @pytest.mark.parametrize("towards", [RIGHT, DOWN, LEFT, UP])
 def test_the_tip_of_a_pointer_is_at_its_place(towards: int) -> None:
     item = pointer(100, 50, towards, WHITE)
@@ -218,21 +188,3 @@ def test_the_tip_of_a_pointer_is_at_its_place(towards: int) -> None:
     assert display.words[50, 100] == WHITE
     assert elements.mean() == pytest.approx(100 + across * 2.8)
     assert lines.mean() == pytest.approx(50 + down * 2.8)
-
-
-@given(st.lists(st.tuples(*[st.integers(0, 2)] * 4), min_size=1, max_size=60))
-def test_no_stroke_is_drawn_twice_in_whichever_direction_it_comes(strokes: list[tuple[int, ...]]) -> None:
-    both_ways = {(stroke, (*stroke[2:], *stroke[:2])) for stroke in strokes if stroke[:2] != stroke[2:]}
-    expected = {min(ways, key=lambda way: (way[1], way[0])) for ways in both_ways}
-    found = drawn(np.array(strokes, np.float64)).tolist()
-    assert found == sorted(map(list, expected)) or not expected
-
-
-def test_a_small_picture_is_its_colors_in_borrowed_words() -> None:
-    full = np.arange(36, dtype=np.uint8).reshape(3, 4, 3)
-    small = SmallPicture(full, 12)
-    display = Ramtek9300(TINY)
-    for first, left, top in ((900, 3, 5), (900, 3, 5), (800, 20, 9)):
-        draw_items(display, [small.item(first, left, top)])
-        words = display.words[top : top + 3, left : left + 4]
-        assert (small.colors[words - first] == full).all()

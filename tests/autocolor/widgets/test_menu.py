@@ -7,9 +7,7 @@ from hypothesis import strategies as st
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import (
     MENU,
-    MESSAGE_CHARACTERS,
-    MOST_LINES,
-    WIDE_BAR,
+    MORE,
     WORK,
     Section,
     folded,
@@ -19,88 +17,42 @@ from autocolor.widgets.menu import (
     menu_items,
     open_sections,
     page_of_menu,
-    pages_of,
     sections_of,
 )
-from autocolor.widgets.widget import ROW_LINES, Button, Choice, Gap, Heading, Place, Widget
+from autocolor.widgets.widget import ROW_LINES, Button, Choice, Entry, Gap, Place, Widget
 
-rows = st.lists(st.sampled_from([Button, Gap, Heading]), max_size=120).map(
-    lambda kinds: [kind(str(number)) for number, kind in enumerate(kinds)]
-)
+TALL = Entry("a row", value="with a long value")
 
-
-@given(rows)
-def test_the_pages_of_a_menu_have_all_rows_in_their_order(rows: list[Widget]) -> None:
-    pages = pages_of(rows)
-    assert [row for page in pages for row in page] == rows
-    for page in pages:
-        shown = [*page, Button("more")] if len(pages) > 1 else page
-        assert [row.label for row in laid_out(shown)] == [row.label for row in shown]
+rows = st.lists(st.sampled_from([Button("a button"), Gap("a gap"), TALL]), max_size=120)
 
 
-FIT = MOST_LINES // ROW_LINES
-"""The rows of one page."""
-
-
-def buttons(count: int) -> list[Widget]:
-    return [Button(str(number)) for number in range(count)]
-
-
-@pytest.mark.parametrize(
-    ("count", "last", "sizes"),
-    [
-        (FIT, 0, [FIT]),
-        (FIT + 1, 0, [FIT - 1, 2]),
-        (2 * FIT - 2, 0, [FIT - 1, FIT - 1]),
-        (2 * FIT - 1, 0, [FIT - 1, FIT - 1, 1]),
-        (FIT - 2, 2, [FIT - 2]),
-        (FIT - 1, 2, [FIT - 3, 2]),
-    ],
-)
-def test_one_row_more_than_fits_makes_a_page_more(count: int, last: int, sizes: list[int]) -> None:
-    rows, turned = buttons(count), list[int]()
-    ends = [Button(f"end {number}") for number in range(last)]
-    shown: list[str] = []
-    for number, size in enumerate(sizes):
-        page = page_of_menu(rows, ends, number, turned.append)
-        labels = [row.label for row in page]
+@given(rows, st.lists(st.sampled_from([Gap("a gap"), Button("an end")]), max_size=4))
+def test_the_pages_of_a_menu_have_all_rows_in_their_order(rows: list[Widget], last: list[Widget]) -> None:
+    turned: list[int] = []
+    shown: list[Widget] = []
+    number = pages = 0
+    while number < max(pages, 1):
+        page = page_of_menu(rows, last, number, turned.append)
+        assert [row.area.top for row in page] == [
+            MENU.top + lines_of(page[:place]) for place in range(len(page))
+        ]
         assert all(MENU.covers(row.area) for row in page)
-        assert labels[size:] == [*(["more"] if len(sizes) > 1 else []), *(row.label for row in ends)]
-        shown += labels[:size]
-        if len(sizes) > 1:
-            more = page[size]
-            assert isinstance(more, Button)
-            assert more.value == f"{number + 1} of {len(sizes)}"
-            more.pick(Place(0, 0))
-            assert turned[-1] == (number + 1) % len(sizes)
-    assert shown == [row.label for row in rows]
-    # If there are fewer pages than before, the last one is shown.
-    assert [row.label for row in page_of_menu(rows, ends, 99, turned.append)] == labels
-
-
-@pytest.mark.parametrize(
-    ("over", "goes_with"),
-    [(Heading("over"), True), (Section("over"), False), (Section("over", is_open=False), False)],
-)
-def test_a_heading_is_on_the_page_of_the_row_below_it(over: Widget, goes_with: bool) -> None:
-    rows = buttons(60)
-    first, second, *_ = pages_of([*rows[: FIT - 2], over, *rows[FIT - 2 :]])
-    assert (over in second, len(first)) == (goes_with, FIT - 2 if goes_with else FIT - 1)
-    assert folded(rows, {}, lambda *_: None, MOST_LINES) == rows
-
-
-@given(rows)
-def test_rows_stand_one_below_the_other_within_the_menu(rows: list[Widget]) -> None:
-    top = MENU.top
-    for row in laid_out(rows):
-        assert MENU.covers(row.area)
-        assert row.area.top == top
-        assert row.area.height == (ROW_LINES // 2 if isinstance(row, Gap) else ROW_LINES)
-        top = row.area.bottom + 1
-    assert MENU.height == MOST_LINES == 448
-    assert MENU == (504, 16, 639, 463)
-    assert WORK == (0, 16, 503, 463)
-    assert WIDE_BAR == (0, 440, 503, 463)
+        own = page[: len(page) - len(last)]
+        if own and own[-1].label == MORE:
+            more = own.pop()
+            assert isinstance(more, Choice)
+            pages = len(more.names)
+            assert more.present == f"{number + 1} of {pages}"
+            more.nudge(1)
+            assert turned[-1] == (number + 1) % pages
+        assert [row.label for row in page[len(page) - len(last) :]] == [row.label for row in last]
+        shown += own
+        number += 1
+    assert [row.label for row in shown] == [row.label for row in rows]
+    # If there are fewer pages than before, the last page is shown.
+    assert page_of_menu(rows, last, 99, turned.append) == page
+    # A page more is for a row that does not fit.
+    assert (pages > 0) == (lines_of(rows) + lines_of(last) > MENU.height)
 
 
 def test_the_row_that_is_lit_alone_looks_different() -> None:
@@ -141,7 +93,7 @@ def test_the_pages_of_a_list_have_every_name_once_beside_the_menu(
         assert not any(a.overlaps(b) for number, a in enumerate(areas) for b in areas[:number])
         for row in shown.rows:
             assert row.within == choice.key
-            row.pick(row.area)  # type: ignore[arg-type]
+            row.pick(Place(row.area.right, row.area.top))
         seen += taken
         if not turned or turned[-1] == 0:
             break
@@ -150,8 +102,8 @@ def test_the_pages_of_a_list_have_every_name_once_beside_the_menu(
     assert seen == names
     first = list_of(choice, None, taken.append, turned.append)
     assert first.chosen.label == present
-    room = len(first.rows) <= first.area.height // ROW_LINES and first.area.top > MENU.top
-    if room and first.area.bottom < MENU.bottom:
+    has_room = len(first.rows) <= first.area.height // ROW_LINES and first.area.top > MENU.top
+    if has_room and first.area.bottom < MENU.bottom:
         assert first.chosen.area.top == choice.area.top
 
 
@@ -207,17 +159,25 @@ def test_a_used_section_and_those_above_stay_as_they_are_if_they_fit(
     assert total <= room or not is_open & set(below)
 
 
-def test_sections_that_nobody_used_are_open_from_the_top() -> None:
-    assert open_sections({"a": 10, "b": 10, "c": 10}, {}, 25) == {"a", "b"}
-    assert open_sections({"a": 10, "b": 30, "c": 10}, {}, 25) == {"a", "c"}
-    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": True, "b": True}, 20) == {"a", "b"}
-    assert open_sections({"a": 10, "b": 10, "c": 10}, {"a": True, "b": True, "c": True}, 20) == {"a", "c"}
-    assert open_sections({"a": 10, "b": 10, "c": 10}, {"b": True, "a": False}, 25) == {"b", "c"}
+@pytest.mark.parametrize(
+    ("heights", "folds", "room", "is_open"),
+    [
+        ((10, 10, 10), {}, 25, "ab"),
+        ((10, 30, 10), {}, 25, "ac"),
+        ((10, 10, 10), {"a": True, "b": True}, 20, "ab"),
+        ((10, 10, 10), {"a": True, "b": True, "c": True}, 20, "ac"),
+        ((10, 10, 10), {"b": True, "a": False}, 25, "bc"),
+    ],
+)
+def test_sections_that_nobody_used_are_open_from_the_top(
+    heights: tuple[int, ...], folds: dict[str, bool], room: int, is_open: str
+) -> None:
+    assert open_sections(dict(zip("abc", heights, strict=True)), folds, room) == set(is_open)
 
 
 def menu_of(*sizes: int) -> list[Widget]:
     """Two rows, and sections with so many rows."""
-    menu: list[Widget] = [Heading("menu"), Button("first")]
+    menu: list[Widget] = [Gap("menu"), Button("first")]
     for number, size in enumerate(sizes):
         menu += [Section(f"s{number}"), *(Button(f"row {number}, {row}") for row in range(size))]
     return menu
@@ -226,7 +186,7 @@ def menu_of(*sizes: int) -> list[Widget]:
 @given(st.lists(st.integers(0, 30), max_size=6), folds)
 def test_folding_leaves_rows_out_and_changes_no_order(sizes: list[int], uses: list[tuple[str, bool]]) -> None:
     rows, did = menu_of(*sizes), list[tuple[str, bool]]()
-    shown = folded(rows, after(uses), lambda name, is_open: did.append((name, is_open)), MOST_LINES)
+    shown = folded(rows, after(uses), lambda name, is_open: did.append((name, is_open)), MENU.height)
     labels = [row.label for row in rows]
     places = [labels.index(row.label) for row in shown]
     assert places == sorted(places)
@@ -235,14 +195,13 @@ def test_folding_leaves_rows_out_and_changes_no_order(sizes: list[int], uses: li
     for section, *inside in sections_of(shown)[1:]:
         assert isinstance(section, Section)
         assert inside == (whole[section.label] if section.is_open else [])
-        assert len(section.hint) <= MESSAGE_CHARACTERS
-        section.pick(None)  # type: ignore[arg-type]
+        section.pick(Place(0, 0))
         assert did[-1] == (section.label, not section.is_open)
         section.nudge(1)
         section.nudge(-1)
         assert did[-2:] == [(section.label, True), (section.label, False)]
     assert len(whole) == len(sections_of(shown)) - 1
     used = [name for name, is_open in after(uses).items() if is_open and name in whole]
-    fixed = 2 + len(sizes)
-    if fixed + max([len(whole[name]) for name in used[-1:]], default=0) <= MOST_LINES // ROW_LINES:
-        assert lines_of(shown) <= MOST_LINES
+    fixed = len(sizes) + 1.5
+    if fixed + max([len(whole[name]) for name in used[-1:]], default=0) <= MENU.height / ROW_LINES:
+        assert lines_of(shown) <= MENU.height

@@ -120,8 +120,8 @@ def test_a_library_that_hangs_is_ended(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(reader, "WORKER", OWN)
     monkeypatch.setattr(reader, "most_seconds", lambda size: 1)
     assert refusal(read, tmp_path, "import time; time.sleep(100)") == (
-        "a.fake: json must read it within 1 seconds, for its size, and did not; write it as OBJ or PLY,"
-        " or allow more with --limit (limit= in Python)"
+        "a.fake: json must read it within 1 seconds, and did not; write it as OBJ or PLY, or allow"
+        " more with --limit"
     )
 
 

@@ -69,10 +69,8 @@ def test_a_polygon_of_many_sides_is_split_and_what_follows_is_told(tmp_path: Pat
     )
 
 
-CUT = "the file is cut short or its counts are wrong"
-POLYGONS = (
-    "as the header says, not {}, each ended by a negative corner; correct the header or the connectivity"
-)
+CUT = "it is cut short or its counts are wrong"
+POLYGONS = "each ended by a negative corner, not {}; correct the header or the corners"
 COUNTS = "the header must count parts from 0, and nodes, polygons and corners from 1"
 RANGE = "part 2 must have polygons of 1 to 6, in order, which no other part has"
 CORNER = "a corner must be a node number of 1 to 8, or minus one"
@@ -86,7 +84,7 @@ test_what_is_refused = refused(
             ("2 8 6", "-1 8 6", f", line 1: {COUNTS}, not '-1'; correct it"),
             ("6 24", "25 24", f": there must be 25 polygons, {POLYGONS.format(6)}"),
             ("8 -6", "8 6", f": there must be 6 polygons, {POLYGONS.format(5)}"),
-            ("4 8 -6", "", f": there must be 56 numbers up to the end of the connectivity, not 53; {CUT}"),
+            ("4 8 -6", "", f": there must be 56 numbers to the end of the connectivity, not 53; {CUT}"),
             *(
                 ("1 5 6 6", f"1 5 {wrong}", f", line 2: {RANGE}, not '{wrong[0]}'; correct it")
                 for wrong in ("6 7", "0 0", "6 5", "5 6")

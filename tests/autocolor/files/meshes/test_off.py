@@ -98,8 +98,8 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
     )
 
 
-LINES = ": the header must count nodes and polygons, at least one, each on its own line, not"
-CUT = "the file is cut short or its counts are wrong"
+LINES = ": the header must count the lines of nodes and polygons, 1 or more, not"
+CUT = "it is cut short or its counts are wrong"
 
 test_what_is_refused = refused(
     "cube.off",
@@ -113,7 +113,7 @@ test_what_is_refused = refused(
                 " coordinates, as text",
             ),
             *(
-                ("8 6 12", f"{counts} 12", f"{LINES} {told} of 14 lines; {CUT}")
+                ("8 6 12", f"{counts} 12", f"{LINES} {told} of 14 lines; export it again")
                 for counts, told in (("0 6", "0 and 6"), ("8 0", "8 and 0"), ("8 7", "8 and 7"))
             ),
             ("1 1 0\n", "1 1\n", ", line 6: the line of a node must have 3 numbers, not '1'; correct it"),

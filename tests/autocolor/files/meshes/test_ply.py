@@ -160,10 +160,7 @@ def test_faces_may_be_empty_and_numbers_begin_like_the_end_of_a_line(path: Path)
             assert mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 
-LINE = (
-    "a line of the header must be a format, a comment, an element with its count or one of its properties"
-    " with a type of PLY, each with a name of its own"
-)
+LINE = "a line of the header must be a format, comment, element or property of PLY, named once"
 FACE = "element face 1"
 
 test_a_wrong_header_is_refused = refused(
@@ -348,11 +345,11 @@ def sized(count: int, *properties: str, data: bytes, order: str = "<") -> bytes:
     return header(f"element face {count}", *(f"property {each}" for each in properties), order=order) + data
 
 
-CUT = "the file is cut short or its header is wrong, export it again"
+CUT = "export it again"
 OUTSIDE = "elements 'face' must end within the file, with lists of 0 or more values"
 WIDTH = (
-    "a line of an element 'face' must have the values of x and of_it, with the count before each list, and no"
-    " others; correct it"
+    "an element 'face' must have the values of x and of_it, the count before each list, and no others;"
+    " correct it"
 )
 WIDE = ("float x", "list uchar int of_it")
 

@@ -12,7 +12,7 @@ from autocolor.files.scene_toml.toml_text import MOST_PROBLEMS, SceneProblems, p
 from autocolor.scene.columns import Problem
 from tests.tables import refused
 
-LARGE = "scene.toml, line 2: a scene file must have at most 16 brackets in each other, "
+LARGE = "scene.toml, line 2: a scene file must have at most 16 nested brackets, "
 
 test_what_is_no_toml_is_refused = refused(
     lambda data: parsed_toml(data, "scene.toml"),

@@ -95,9 +95,7 @@ def test_a_hostile_journal_is_never_rolled_back(
     hostile_journal(path, named, has_header=has_header)
     before = contents(tmp_path)
     for place in (path, link):
-        with pytest.raises(
-            InputError, match="the -journal beside the store names another file, which SQLite"
-        ):
+        with pytest.raises(InputError, match="its -journal names another file, which SQLite deletes"):
             act(place)
     assert contents(tmp_path) == before
 
@@ -221,7 +219,7 @@ def test_a_store_that_is_write_protected_is_read_and_not_replaced(
     # Root may write everywhere.
     monkeypatch.setattr(os, "access", lambda *_: False)
     read(path)
-    with pytest.raises(OutputError, match=r"small.sqlite: a store must let itself be written to be changed"):
+    with pytest.raises(OutputError, match=r"small.sqlite: a store must not be write-protected to be changed"):
         change(path)
     assert contents(tmp_path) == before
 

@@ -150,7 +150,7 @@ def test_an_addition_that_does_not_fit_keeps_the_store_as_it_is(tmp_path: Path) 
     with pytest.raises(WriteError) as refused:
         write_store(path, small_scene(), overwrite=True)
     assert str(refused.value) == (
-        "small.sqlite: what other programs added to a store must fit the tables of the scene, and does not"
+        "small.sqlite: what other programs added must fit the tables of the scene, and does not"
         " (UNIQUE constraint failed: index 'one'); drop it, or write to another file"
     )
     assert path.read_bytes() == before

@@ -103,7 +103,7 @@ def test_values_of_scalars_go_with_their_nodes_and_polygons(tables: Tables) -> N
         (
             # It would change nothing itself, but keep the row from being removed.
             "CREATE TRIGGER evil BEFORE DELETE ON lights BEGIN SELECT RAISE(IGNORE); END",
-            "a store that is changed must have no triggers, and this one has trigger 'evil'; drop it, or"
+            "a store that is changed must have no triggers, not 'evil'; drop it, or"
             " write the scene to another file",
         ),
         (
