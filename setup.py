@@ -1,7 +1,13 @@
-"""The packages: those of the tree, and the demo's scene, which is installed beside the code that shows it."""
+"""The packages: those of the tree, and the example scenes, which are installed beside them."""
 
 from __future__ import annotations
 
 from setuptools import find_packages, setup
 
-setup(packages=[*find_packages(include=["autocolor*", "ramtek_emu*"]), "autocolor.demo_scene"])
+EXAMPLES = {f"autocolor.examples.{name}": f"scenes/{name}" for name in ("coupe", "bracket", "row", "pyramid")}
+
+setup(
+    packages=[*find_packages(include=["autocolor*", "ramtek_emu*"]), *EXAMPLES],
+    package_dir=EXAMPLES,
+    package_data={name: ["scene.toml", "*.obj", "*.ply"] for name in EXAMPLES},
+)

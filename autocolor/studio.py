@@ -346,6 +346,10 @@ class Studio(Suggesting):
         """Return to the view that `view_back` left; returns False if there is none."""
         return self._move("view_forward")
 
+    def go_on(self, history: History) -> None:
+        """Go on with another session, such as the history of a journal; this session stays as it is."""
+        self._show_scene(history.scene, lambda: setattr(self, "_history", history))
+
     def take_back(self) -> None:
         """Take the last edit and its gesture back, as if they had not been made."""
         before = self._history.before_gesture

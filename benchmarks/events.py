@@ -106,9 +106,9 @@ class Bench:
         self.do(at((300, 60)))
 
     def place(self, label: str, share: Share = (0.5, 0.5)) -> tuple[int, int]:
-        """A place in the widget of a label, or the handle whose label begins so."""
+        """A place in the widget of a label or a key, or the handle whose label begins so."""
         for widget in self.viewer.board.widgets():
-            if widget.label == label:
+            if label in (widget.label, widget.key):
                 left, top, right, bottom = widget.area
                 return round(left + share[0] * (right - left)), round(top + share[1] * (bottom - top))
         for handle in self.viewer.board.content.handles:
@@ -281,7 +281,7 @@ CASES: Sequence[Case] = (
     Case("mapping: a point, dragged", "mapping", 8, drag("intensity 0."), pick("straight")),
     Case("mapping: equalize", "mapping", 20, wheel("mapping"), curve("logarithm")),
     Case("lights: intensity, dragged", "lights", 10, drag("intensity")),
-    Case("lights: intensity, dragged in the list", "lights", 10, drag("back", (0.52, 0.5), (0.68, 0.5))),
+    Case("lights: intensity, dragged in the list", "lights", 10, drag("light list.back.intensity")),
     Case("lights: a highlight, dragged", "lights", 20, drag("highlight of back")),
     Case("lights: position, dragged", "lights", 10, drag("position x")),
     Case("light & view: a light, dragged", "light and view", 10, drag("key: x")),

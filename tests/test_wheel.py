@@ -22,6 +22,8 @@ from typing import NamedTuple
 
 import pytest
 
+from autocolor.files.paths import EXAMPLES
+
 pytestmark = pytest.mark.thorough
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -114,16 +116,17 @@ def files_of_packages() -> set[str]:
     typed = {Path(package, "py.typed") for package in PACKAGES}
     web = {path.relative_to(ROOT) for path in (ROOT / "autocolor" / "web").glob("autocolor.*")}
     assert {path.suffix for path in web} == {".css", ".js"}
-    coupe = ROOT / "scenes" / "coupe"
-    scene = {
-        Path("autocolor", "demo_scene", path.name) for path in (coupe / "scene.toml", *coupe.glob("*.obj"))
+    examples = {
+        Path("autocolor", "examples", name, path.name)
+        for name in EXAMPLES
+        for path in (ROOT / "scenes" / name).iterdir()
     }
     claims = {path.relative_to(ROOT) for path in (ROOT / "ramtek_emu" / "conformance").glob("*.jsonl")}
     assert claims
-    return {path.as_posix() for path in modules | typed | web | scene | claims}
+    return {path.as_posix() for path in modules | typed | web | examples | claims}
 
 
-def test_the_wheel_holds_both_packages_and_the_demo_and_nothing_else(installed: Installed) -> None:
+def test_the_wheel_holds_both_packages_and_the_examples_and_nothing_else(installed: Installed) -> None:
     packed = {name for name in installed.in_wheel if ".dist-info/" not in name}
     assert packed == files_of_packages()
 
@@ -144,10 +147,13 @@ def test_an_installed_command_says_its_version(installed: Installed, tmp_path: P
         assert installed.run(name, "--version", cwd=tmp_path).stdout.split()[-1] == version
 
 
-def test_the_installed_demo_is_a_scene(installed: Installed, tmp_path: Path) -> None:
-    demo = installed.packages / "autocolor" / "demo_scene"
-    told = json.loads(installed.run("autocolor", "info", str(demo), "--json", cwd=tmp_path).stdout)
-    here = [sys.executable, "-m", "autocolor", "info", "scenes/coupe", "--json"]
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_an_installed_example_is_the_scene_of_the_checkout(
+    name: str, installed: Installed, tmp_path: Path
+) -> None:
+    example = installed.packages / "autocolor" / "examples" / name
+    told = json.loads(installed.run("autocolor", "info", str(example), "--json", cwd=tmp_path).stdout)
+    here = [sys.executable, "-m", "autocolor", "info", f"scenes/{name}", "--json"]
     expected = json.loads(subprocess.run(here, cwd=ROOT, capture_output=True, text=True, check=True).stdout)
     assert told["polygons"] == expected["polygons"] > 0
     assert told["lights"] == expected["lights"]
@@ -166,7 +172,7 @@ def test_the_installed_display_writes_its_pattern_without_a_screen(
 def test_the_code_that_runs_is_the_installed_one(
     program: str, arguments: tuple[str, ...], installed: Installed, tmp_path: Path
 ) -> None:
-    (tmp_path / "demo").symlink_to(installed.packages / "autocolor" / "demo_scene")
+    (tmp_path / "demo").symlink_to(installed.packages / "autocolor" / "examples" / "coupe")
     told = installed.run(program, *arguments, cwd=tmp_path, verbose=True).stderr
     loaded = {Path(name).resolve() for name in MODULE.findall(told)}
     assert len(loaded) > 10

@@ -1,30 +1,28 @@
-"""The built-in demo, the coupe. It is inside the installed package, or in `scenes` of a checkout."""
+"""The built-in demo, the coupe: one of the example scenes."""
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from autocolor.errors import MissingInputError
+from autocolor.files.paths import DEMO, EXAMPLE_PLACES, example_scenes
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
     from autocolor.journal.history import History
     from autocolor.scene.scene import Scene
 
-PACKAGE: Final = Path(__file__).resolve().parents[1]
-PLACES: Final = (PACKAGE / "demo_scene", PACKAGE.parent / "scenes" / "coupe")
-
 
 def demo_folder() -> Path:
     """The folder of the demo scene. Raises MissingInputError if it is not installed."""
-    for place in PLACES:
-        if (place / "scene.toml").is_file():
-            return place
-    raise MissingInputError(
-        f"the built-in demo must be at {PLACES[0]}, but no scene is there; install autocolor again"
-    )
+    folder = example_scenes().get(DEMO)
+    if folder is None:
+        place = EXAMPLE_PLACES[0] / DEMO
+        raise MissingInputError(
+            f"the built-in demo must be at {place}, but no scene is there; install autocolor again"
+        )
+    return folder
 
 
 def demo() -> Scene:
@@ -36,8 +34,7 @@ def demo_report() -> SceneReport:
     """The scene of `demo`, with its report. Raises MissingInputError if it is not installed."""
     from autocolor.files.opening import read_scene_with_report
 
-    report = read_scene_with_report(demo_folder())
-    return dataclasses.replace(report, scene=report.scene.replace(name="coupe"))
+    return read_scene_with_report(demo_folder())
 
 
 def demo_session() -> History:

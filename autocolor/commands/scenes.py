@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -299,7 +300,7 @@ def session_of(source: SceneSource) -> tuple[SceneReport, History]:
 
     place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
     report = read(source)
-    history = History(report.scene, place)
+    history = History(report.scene, replace(place, repairs=report.repairs))
     scene = edited(report, source)
     if scene is not report.scene:
         history.take(scene)

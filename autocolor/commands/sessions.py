@@ -13,9 +13,15 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.errors import AutocolorError, InputError, MissingInputError, UsageError
-from autocolor.journal.autosave import JOURNAL, Autosave, forget, left_sessions, refuse_links, written_at
-from autocolor.journal.journal import read_journal
+from autocolor.errors import AutocolorError, InputError, UsageError
+from autocolor.journal.autosave import (
+    Autosave,
+    forget,
+    left_sessions,
+    newest_session,
+    session_in,
+    written_at,
+)
 from autocolor.screens.viewer import Viewer
 from ramtek_emu.command_line import tell
 
@@ -34,13 +40,18 @@ def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Ca
     message once. Messages on stderr and in the viewer mention abandoned sessions. After an exception, such as
     `Ended` by a signal, the journal remains, with every step.
     """
-    autosave = Autosave(folder)
+    viewer.session.autosave = Autosave(folder)
     _mention_left_sessions(viewer)
     messages: set[str] = set()
 
+    def autosave() -> Autosave:
+        """The journal of the present session: the user may recover another one."""
+        assert viewer.session.autosave is not None
+        return viewer.session.autosave
+
     def update() -> None:
         try:
-            autosave.update(viewer.studio.history)
+            autosave().update(viewer.studio.history)
         except AutocolorError as error:
             if str(error) not in messages:
                 messages.add(str(error))
@@ -50,9 +61,9 @@ def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Ca
         yield update
     except BaseException:
         with suppress(AutocolorError):
-            autosave.update(viewer.studio.history, at_once=True)
+            autosave().update(viewer.studio.history, at_once=True)
         raise
-    autosave.end()
+    autosave().end()
 
 
 def _mention_left_sessions(viewer: Viewer) -> None:
@@ -66,17 +77,15 @@ def _mention_left_sessions(viewer: Viewer) -> None:
         " opens the last session, `--sessions` lists them, `--forget SESSION` removes a session",
         err=True,
     )
-    viewer.tell(
-        f"a session was not closed: autocolor view --recover opens it; {viewer.message}",
-        persistent=True,
-    )
+    way = "file, recover" if viewer.session.is_at_hand else "autocolor view --recover"
+    viewer.tell(f"a session was not closed: {way} opens it; {viewer.message}", persistent=True)
 
 
 def list_sessions() -> None:
     """Print a line for each abandoned session, the newest first: its name, time, source and steps."""
     for folder in left_sessions():
         try:
-            session = _session_in(folder)
+            session = session_in(folder)
         except InputError as error:
             text = "; ".join(error.problems)
         else:
@@ -100,22 +109,8 @@ def chosen_session(name: str) -> tuple[Path, JournalSession]:
     """
     if name != NEWEST:
         folder = _folder_named(name)
-        return folder, _session_in(folder)
-    for folder in left_sessions():
-        try:
-            return folder, _session_in(folder)
-        except InputError as error:
-            tell(*(f"autocolor: {folder}: {problem}" for problem in error.problems))
-    raise MissingInputError(
-        "--recover: there must be a session that was not closed and can be read, and there is none; name a"
-        " scene instead"
-    )
-
-
-def _session_in(folder: Path) -> JournalSession:
-    """The session in a folder. Raises InputError if it is invalid."""
-    refuse_links(folder)
-    return read_journal(folder / JOURNAL)
+        return folder, session_in(folder)
+    return newest_session(lambda problem: tell(f"autocolor: {problem}"))
 
 
 def _folder_named(name: str) -> Path:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.demo import PLACES
 from autocolor.commands.options import bringing_paints, flag, option, paints_option, recover_option
 from autocolor.commands.scenes import SceneSource, ended, scene_options, session_of
 from autocolor.errors import UnavailableError, UsageError
@@ -131,9 +130,11 @@ def _without_answer(port: TcpPort | UnixPort, address: str) -> UnavailableError:
 
 def folder_of(scene: str) -> Path:
     """The folder of a scene, or the scene's file; for the built-in demo, the current folder."""
+    from autocolor.files.paths import DEMO, example_scenes
+
     path = Path(scene).absolute()
     folder = path if path.is_dir() else path.parent
-    return Path.cwd() if folder in PLACES else folder
+    return Path.cwd() if folder == example_scenes().get(DEMO) else folder
 
 
 def session_elsewhere(

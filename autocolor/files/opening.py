@@ -40,7 +40,6 @@ from autocolor.files.palette_file import GPL
 from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES, is_within
 from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import read_bytes, status_of
-from autocolor.files.rig_file import RIG_SUFFIX
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.files.scene_toml.scene_meshes import SOURCES, MeshSource
@@ -236,24 +235,24 @@ def hinted_up(path: PathLike, mesh: Mesh) -> str:
     return ""
 
 
-# The files of a folder that can be opened. Kinds are recognized by names only, which is quick: no file is
-# opened. So CSV files are not listed, neither as tables of a mesh nor as paints.
+# The files of a folder that can be opened. Kinds are recognized by names, which is quick; only TOML files are
+# read. So CSV files are not listed, neither as tables of a mesh nor as paints.
 
 FOLDER: Final = "folder"
 MESH: Final = "mesh"
+RIG: Final = "rig"
 
 
 class Openable(NamedTuple):
-    """A path, and its kind: "scene", "store", "picture", "mesh", "paints" or "folder"."""
+    """A path, and its kind: "scene", "store", "picture", "mesh", "rig", "paints" or "folder"."""
 
     path: Path
     kind: str
 
 
 def openables_of(folder: Path) -> list[Openable]:
-    """The files of a folder that can be opened, then its folders, by name.
+    """The files of a folder that can be opened, then its folders, by name; hidden names are left out.
 
-    Hidden names are left out, and TOML files that are neither a scene nor a rig, such as pyproject.toml.
     Raises InputError if the folder cannot be read.
     """
     try:
@@ -267,19 +266,7 @@ def openables_of(folder: Path) -> list[Openable]:
     names.sort(key=lambda name: re.sub(r"\d+", lambda number: number[0].zfill(20), name.casefold()))
     paths = [folder / name for name in names if not name.startswith(".")]
     openables = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
-    openables = [each for each in openables if each.kind == FOLDER or not is_other_toml(each.path)]
     return sorted(openables, key=lambda openable: openable.kind == FOLDER)
-
-
-def is_other_toml(path: Path) -> bool:
-    """Whether a TOML file can be read, and is neither a scene nor a rig."""
-    if path.suffix.lower() != RIG_SUFFIX:
-        return False
-    try:
-        document = parsed_toml(read_bytes(path, LARGEST_TEXT), path.name, "a scene file")
-    except AutocolorError:
-        return False
-    return "mesh" not in document and "minimum" not in document
 
 
 def kind_of(path: Path) -> str:
@@ -291,7 +278,21 @@ def kind_of(path: Path) -> str:
     found = format_of_folder(path) if is_folder else format_named(path, FILES) if is_file else None
     if found is None:
         return FOLDER if is_folder else ""
+    if found is SCENE and is_file:
+        return _kind_of_toml(path)
     return MESH if found.keys else found.name
+
+
+def _kind_of_toml(path: Path) -> str:
+    """The kind of a TOML file: a scene, a rig, or empty, as for pyproject.toml.
+
+    A file that cannot be read counts as a scene, so that opening it says why.
+    """
+    try:
+        document = parsed_toml(read_bytes(path, LARGEST_TEXT), path.name, "a scene file")
+    except AutocolorError:
+        return SCENE.name
+    return SCENE.name if "mesh" in document else RIG if "minimum" in document else ""
 
 
 def stays_within(path: Path, folder: Path) -> bool:

@@ -12,12 +12,33 @@ from autocolor.files.reading import shown
 SCENE_FILE: Final = "scene.toml"
 """The name of the scene file in a scene's folder."""
 
+PACKAGE: Final = Path(__file__).resolve().parents[1]
+"""The folder of this package; nothing is saved there."""
+
+DEMO: Final = "coupe"
+EXAMPLES: Final = (DEMO, "bracket", "row", "pyramid")
+EXAMPLE_PLACES: Final = (PACKAGE / "examples", PACKAGE.parent / "scenes")
+"""Where the example scenes are: in the installed package, or in a checkout."""
+
 STORE_SUFFIXES: Final = (".sqlite", ".db")
 PICTURE_SUFFIX: Final = ".npz"
 
 LONGEST_STEM: Final = 100
 REFUSED: Final = frozenset('/\\:*?"<>|')
 """Characters with a special meaning in the paths of some system."""
+
+
+def example_scenes() -> dict[str, Path]:
+    """The folders of the example scenes that are installed, by their names."""
+    for place in EXAMPLE_PLACES:
+        if folders := {name: place / name for name in EXAMPLES if (place / name / SCENE_FILE).is_file()}:
+            return folders
+    return {}
+
+
+def is_example(path: Path) -> bool:
+    """Whether a path is the folder of an example scene."""
+    return path.parent in EXAMPLE_PLACES and path.name in EXAMPLES
 
 
 def path_within(problems: list[str], folder: Path, name: str, *, outside: bool = False) -> Path | None:

@@ -16,7 +16,6 @@ import os
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import AutocolorError
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_toml.scene_text import sparse_row
 from autocolor.files.scene_toml.toml_edit import edited_toml
@@ -27,15 +26,6 @@ from autocolor.scene.rigs import Rig
 from autocolor.scene.scene import Scene, check_scene
 
 RIG_SUFFIX: Final = ".toml"
-
-
-def is_rig(path: Path) -> bool:
-    """Whether a TOML file is a rig and not a scene: it has the bounds of an object, and no mesh."""
-    try:
-        document = parsed_toml(read_bytes(path, LARGEST_TEXT), path.name, "a rig file")
-    except AutocolorError:
-        return False
-    return "minimum" in document and "mesh" not in document
 
 
 def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bool = False) -> None:

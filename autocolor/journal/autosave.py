@@ -11,17 +11,17 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import AutocolorError, InputError, WriteError, reason_of
+from autocolor.errors import AutocolorError, InputError, MissingInputError, WriteError, reason_of
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.state import lock_file, state_folder
 from autocolor.files.writing import write_atomically
 from autocolor.journal.history import Edit, History, Step
-from autocolor.journal.journal import MeshesBeside, first_line, step_line
+from autocolor.journal.journal import JournalSession, MeshesBeside, first_line, read_journal, step_line
 from autocolor.journal.places import Source
 
 SESSIONS: Final = "sessions"
@@ -87,6 +87,12 @@ class Autosave:
         if folder is not None:
             _remove(folder, self._lock)
 
+    def leave(self) -> None:
+        """Leave the folder of the session, to be recovered."""
+        self._folder = None
+        if self._lock is not None:
+            os.close(self._lock)
+
     def _own_folder(self) -> Path:
         """The folder of this session; the first call creates it. Raises OSError."""
         if self._folder is None:
@@ -145,6 +151,28 @@ def left_sessions() -> list[Path]:
         return []
     left = [path for path in paths if (path.is_symlink() or os.path.isdir(path)) and _is_left(path)]
     return sorted(left, key=written_at, reverse=True)
+
+
+def session_in(folder: Path) -> JournalSession:
+    """The left session in a folder. Raises InputError if it is invalid."""
+    refuse_links(folder)
+    return read_journal(folder / JOURNAL)
+
+
+def newest_session(report: Callable[[str], object] = lambda _: None) -> tuple[Path, JournalSession]:
+    """The folder of the newest left session that can be read, and the session.
+
+    `report` is called with the problems of newer sessions. Raises MissingInputError if there is no session.
+    """
+    for folder in left_sessions():
+        try:
+            return folder, session_in(folder)
+        except InputError as error:
+            for problem in error.problems:
+                report(f"{folder}: {problem}")
+    raise MissingInputError(
+        "there must be a session that was not closed and can be read, and there is none; open a scene instead"
+    )
 
 
 def written_at(folder: Path) -> float:

@@ -262,6 +262,10 @@ class History:
         self._saved[self.place] = saved
         self.steps.append(saved)
 
+    def forget_files(self) -> None:
+        """Save the current scene to new files from now on, not to the file that it was opened from."""
+        self._files[self.place] = ()
+
     def _note_opened(self, opened: Opened) -> None:
         """Note the scene of a place that was opened, and its file."""
         place = opened.place

@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -19,17 +19,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.errors import InputError, OutputError
-from autocolor.files.opening import read_scene
-from autocolor.files.paths import PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
+from autocolor.files.opening import read_scene_with_report
+from autocolor.files.paths import PACKAGE, PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import plain_scene
 from autocolor.files.stamps import numbers_of, stamp_of
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scene import Scene
 from autocolor.scene.stage import NONE
-
-PACKAGE: Final = Path(__file__).resolve().parents[1]
-"""The folder of this package, with the built-in demo; nothing is saved there."""
 
 NO_STAMP: Final = ""
 """The stamp of a file that holds another scene by now: no file has it."""
@@ -49,11 +46,13 @@ class ScenePlace:
     """The place of a scene; `source` is None for a scene that was made in memory.
 
     `stamp` is the stamp of the file when the scene was opened (see `stamp_of`), or NO_STAMP if the file holds
-    another scene by now. With None, the scene is never saved to the file.
+    another scene by now. With None, the scene is never saved to the file. `repairs` say what was repaired and
+    skipped when the file was read.
     """
 
     source: Source | None = None
     stamp: str | None = None
+    repairs: tuple[str, ...] = ()
 
     @cached_property
     def file(self) -> str | None:
@@ -153,7 +152,8 @@ def opened(
     saved to it. Raises InputError if the scene does not have the checksum, and as `read_scene`.
     """
     place = place_of(source)
-    present = read_scene(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
+    report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
+    present, place = report.scene, replace(place, repairs=report.repairs)
     for mesh in [scene.mesh for scene in known if scene is not None]:
         if mesh.crease_angle == present.mesh.crease_angle and has_same_tables(mesh, present.mesh):
             present = present.replace(mesh=mesh)
@@ -164,7 +164,7 @@ def opened(
             " bring the old file back"
         )
     if place.stamp is not None and not scene.equals(present):
-        place = ScenePlace(source, NO_STAMP)
+        place = replace(place, stamp=NO_STAMP)
     return Opened(scene, place)
 
 

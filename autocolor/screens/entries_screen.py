@@ -61,6 +61,7 @@ class EntriesScreen(Screen):
 
     name = "entries"
     title = "entries"
+    word = "table"
     help = "The 1024 entries of the lookup table, and who owns them"
     has_menu = False
     shows_scene = False

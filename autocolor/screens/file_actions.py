@@ -8,16 +8,17 @@ from typing import Final
 
 from autocolor.arrays import Bytes
 from autocolor.errors import InputError, UsageError
-from autocolor.files.opening import MESH, hinted_up, kind_of, stays_within
+from autocolor.files.opening import MESH, RIG, hinted_up, kind_of, stays_within
 from autocolor.files.palette_file import Palette, is_palette, read_palette
-from autocolor.files.paths import SCENE_FILE, file_stem, free_path
-from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
+from autocolor.files.paths import file_stem, free_path, is_example
+from autocolor.files.rig_file import RIG_SUFFIX, read_rig, write_rig
 from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
 from autocolor.images import save_image as save_image_of
-from autocolor.screens.session import MIXING, Session
+from autocolor.journal.autosave import Autosave, newest_session
+from autocolor.scene.scene import Scene
+from autocolor.screens.session import MIXING, PICTURE, Session
 from autocolor.sending import shown_colors
-from autocolor.studio import Studio
 from autocolor.widgets.widget import short_name
 
 LONGEST_NAME: Final = 24
@@ -32,9 +33,12 @@ def seeming_up(session: Session) -> str:
     return session.seeming_up.of(lambda: hinted_up(source.path, mesh), mesh, source)
 
 
-def lying(session: Session) -> str:
-    """The hint of a mesh that seems to lie on its side; else empty."""
-    return "lies on its side? the menu turns it" if seeming_up(session) else ""
+def remark(session: Session) -> str:
+    """What to know about the file that was opened: its first repair, or that it seems to lie on its side."""
+    repairs = session.studio.history.place.repairs
+    if not repairs:
+        return "lies on its side? the menu turns it" if seeming_up(session) else ""
+    return repairs[0] + (f" (and {len(repairs) - 1} more)" if len(repairs) > 1 else "")
 
 
 def stand_up(session: Session) -> None:
@@ -45,17 +49,19 @@ def stand_up(session: Session) -> None:
         session.tell(f"read again with {up} up; undo goes back")
 
 
-def open_file(session: Session, path: Path) -> None:
+def open_file(session: Session, path: Path, as_example: bool = False) -> None:
     """Open a file or a folder as one step to undo: a scene, a mesh, a picture, or a rig of lights.
 
-    The colors of a palette file become `paints`, which is no step, and color mixing shows them. Raises
-    InputError or MissingInputError.
+    The colors of a palette file become `paints`, which is no step, and color mixing shows them. A scene that
+    is opened `as_example` is saved to new files, and is no recent file. Raises InputError or
+    MissingInputError.
     """
+    kind, studio = kind_of(path), session.studio
     if is_palette(path):
         bring_paints(session, read_palette(path), path.name)
         session.turn_to(MIXING)
         return
-    if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE and is_rig(path):
+    if kind == RIG:
         rig = read_rig(path)
         try:
             lit = session.scene.with_rig(rig)
@@ -66,14 +72,17 @@ def open_file(session: Session, path: Path) -> None:
         left_out = "" if links[0] == links[1] else ", without links to what it lacks"
         session.tell(f"the lights of {path.name}, fitted to {session.scene.name}{left_out}; undo goes back")
         return
-    if kind_of(path) == MESH:
-        session.studio.open(path, up=session.mesh_up, scale=session.mesh_scale)
+    if kind == MESH:
+        studio.open(path, up=session.mesh_up, scale=session.mesh_scale)
     else:
-        session.studio.open(path)
-    note_file(path.resolve())
-    session.tell(
-        "; ".join(part for part in (f"opened {path.name}", lying(session), "undo goes back") if part)
-    )
+        studio.open(path)
+    if as_example:
+        studio.history.forget_files()
+    else:
+        note_file(path.resolve())
+    is_repaired = bool(studio.history.place.repairs)
+    parts = ["" if is_repaired else f"opened {path.name}", remark(session), "undo goes back"]
+    session.tell("; ".join(filter(None, parts)), is_repaired)
 
 
 def bring_paints(session: Session, paints: Palette, name: str) -> None:
@@ -89,17 +98,12 @@ def read_again(session: Session) -> None:
     session.tell("read again; undo goes back" if is_other else "the file holds this scene")
 
 
-def take_changes(session: Session, disk: FileOnDisk) -> bool:
-    """Show the scene's file that another program changed, or ask first; False if nothing differs."""
-    message = disk.take()
-    if message:
-        session.tell(message, is_warning=session.studio.is_changed, persistent=True)
-    return bool(message)
-
-
 def may_reach(session: Session, path: Path) -> bool:
-    """Whether the user may open a path, or save in it: from elsewhere, no link may lead out of `root`."""
-    return session.is_at_hand or stays_within(path, session.root)
+    """Whether the user may open a path, or save in it.
+
+    From elsewhere, no link may lead out of `root`; the example scenes can be opened.
+    """
+    return session.is_at_hand or is_example(path) or stays_within(path, session.root)
 
 
 def check_reach(session: Session, path: Path, noun: str) -> None:
@@ -134,12 +138,11 @@ def save_rig(session: Session) -> None:
     session.tell(f"saved {path.name}")
 
 
-def export(session: Session, size: tuple[int, int], smooth: int) -> None:
-    """Save the picture at a size as a new PNG file, named after the scene, with a smoothness."""
-    path = free_path(shown_folder(session) / f"{file_stem(session.scene.name)}.png")
-    save_image_of(path, session.scene, size=size, smooth=smooth)
-    width, height = size
-    session.tell(f"saved {path.name}: {width}x{height}, smoothness {smooth}")
+def export(session: Session, scene: Scene, name: str, size: tuple[int, int], smooth: int) -> Path:
+    """Save the picture of a scene at a size as a new PNG file of a name, with a smoothness."""
+    path = free_path(shown_folder(session) / f"{name}.png")
+    save_image_of(path, scene, size=size, smooth=smooth)
+    return path
 
 
 def save_image(session: Session) -> None:
@@ -155,6 +158,24 @@ def save_screenshot(session: Session, colors: Bytes) -> None:
 
     path = write_numbered(png_bytes(colors), shown_folder(session), "autocolor", PNG)
     session.tell(f"saved {path}")
+
+
+def recover(session: Session) -> None:
+    """Go on with the newest session that was not closed; a session with unsaved changes is left in turn.
+
+    Raises InputError, MissingInputError or WriteError.
+    """
+    studio, autosave = session.studio, session.autosave
+    assert autosave is not None
+    folder, recovered = newest_session()
+    autosave.update(studio.history, at_once=True)
+    other, unsaved = Autosave(folder), unsaved_changes(session)
+    studio.go_on(recovered.history)
+    autosave.leave() if unsaved else autosave.end()
+    session.autosave = other
+    back = "; recover again goes back" if unsaved else ""
+    session.turn_to(PICTURE)
+    session.tell(f"{session.scene.name} with all its steps{back}")
 
 
 def unsaved_changes(session: Session) -> str:
@@ -190,10 +211,10 @@ SECONDS_BETWEEN: Final = 0.5
 
 
 class FileOnDisk:
-    """The file of a studio's scene, and whether another program changed it."""
+    """The file of a session's scene, and whether another program changed it."""
 
-    def __init__(self, studio: Studio) -> None:
-        self._studio = studio
+    def __init__(self, session: Session) -> None:
+        self._session = session
         self._looked_at = time.monotonic()
         self._last_look: tuple[int | bytes, ...] | None = None
         self._is_refused = False
@@ -201,33 +222,35 @@ class FileOnDisk:
 
     def was_changed(self) -> bool:
         """Whether another program changed the file since the last call; it is looked at twice a second."""
-        now = time.monotonic()
+        now, studio = time.monotonic(), self._session.studio
         if now - self._looked_at < SECONDS_BETWEEN:
             return False
         self._looked_at = now
-        path = self._studio.file
-        look = None if path is None else look_at(path)
+        look = None if studio.file is None else look_at(studio.file)
         if look is None or look == self._last_look:
             return False
         self._last_look = look
-        return self._is_refused or self._studio.history.on_disk.was_changed(str(path))
+        return self._is_refused or studio.history.on_disk.was_changed(str(studio.file))
 
-    def take(self) -> str:
-        """Show the file's scene, or ask whether to; returns the message, empty if nothing differs.
+    def take(self) -> bool:
+        """Show the scene of the file, or ask whether to; returns False if nothing differs.
 
         Raises InputError if the file has an error; the scene stays as it was.
         """
-        path = self._studio.file
-        assert path is not None
-        name = path.name
-        if self._studio.is_changed:
-            return f"{name} was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
-        was_refused, self._is_refused = self._is_refused, True
-        try:
-            is_other = self._studio.reopen()
-        except InputError as error:
-            raise InputError(f"not shown: {problem}" for problem in error.problems) from None
-        self._is_refused = False
-        if is_other:
-            return f"{name} was changed elsewhere; undo goes back"
-        return f"{name} holds this scene again" if was_refused else ""
+        session, studio = self._session, self._session.studio
+        assert studio.file is not None
+        name, was_refused = studio.file.name, self._is_refused
+        if studio.is_changed:
+            message = f"{name} was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
+        else:
+            self._is_refused = True
+            try:
+                is_other = studio.reopen()
+            except InputError as error:
+                raise InputError(f"not shown: {problem}" for problem in error.problems) from None
+            self._is_refused = False
+            same = f"{name} holds this scene again" if was_refused else ""
+            message = f"{name} was changed elsewhere; undo goes back" if is_other else same
+        if message:
+            session.tell(message, is_warning=studio.is_changed, persistent=True)
+        return bool(message)

@@ -1,59 +1,58 @@
-"""The file screen: scenes, meshes, pictures, rigs and paints to open, recent files, saving and exporting.
+"""The file screen: files to open, recent files and examples with small pictures; saving and exporting.
 
-A pointer opens what is in the session's folder and below, links resolved; on the machine of the window, also
-everything else. Opening is one step to undo, so the scene before is not lost; paints are no step. New files
-are saved in the folder that is shown. The screen shows no surface, so the small picture of the picture file
-under the pointer borrows the words of all surfaces.
+A pointer opens the examples, and what is in the session's folder and below, links resolved; on the machine of
+the window, also everything else. Opening is one step to undo, so the scene before is not lost; paints are no
+step. New files are saved in the folder that is shown. A file of the folder has a larger picture while the
+pointer is on it, in place of the examples.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import Final
+from typing import ClassVar, Final, NamedTuple
 
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.meshes.repair import UPS
-from autocolor.files.opening import FOLDER, Openable, kind_of, openables_of
-from autocolor.files.paths import SCENE_FILE
-from autocolor.files.picture_file import read_picture
-from autocolor.files.rig_file import RIG_SUFFIX, is_rig
+from autocolor.files.opening import FOLDER, RIG, kind_of, openables_of
+from autocolor.files.paths import SCENE_FILE, example_scenes, file_stem
 from autocolor.files.state import recent_files
-from autocolor.images import LARGEST, SMOOTHNESS, SMOOTHNESSES, display_image, size_of
+from autocolor.images import LARGEST, SMOOTHNESS, SMOOTHNESSES, size_of
+from autocolor.journal.autosave import left_sessions, written_at
 from autocolor.journal.saving import free_name
-from autocolor.mapping.palette import thumbnail
-from autocolor.mapping.ranges import BACKGROUND
+from autocolor.rendering import SIZE
+from autocolor.scene.scene import Scene
 from autocolor.screens.file_actions import (
     check_reach,
     export,
     may_reach,
     open_file,
+    recover,
     save,
     save_image,
     save_rig,
 )
+from autocolor.screens.gallery import (
+    FRAME,
+    LINES,
+    NAME_LINES,
+    NO_PICTURE,
+    TILE_ELEMENTS,
+    TILE_LINES,
+    Gallery,
+    Small,
+    Tile,
+    small_picture_of_file,
+)
 from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
-from autocolor.sending import configuration_of
-from autocolor.widgets.items import (
-    CHARACTER,
-    CHARACTER_LINES,
-    LIGHT_GRAY,
-    NIGHT,
-    SLATE,
-    YELLOW,
-    Area,
-    Item,
-    SmallPicture,
-    filled,
-    outline,
-    text,
-)
-from autocolor.widgets.menu import WORK
+from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, NIGHT, SLATE, YELLOW, Area, Item, text
+from autocolor.widgets.menu import WORK, laid_out
 from autocolor.widgets.widget import (
     MARGIN,
     ROW_LINES,
@@ -68,23 +67,45 @@ from autocolor.widgets.widget import (
     short_name,
 )
 
-LEFT: Final = Area(8, WORK.top + 40, 247, 455)
-RIGHT: Final = Area(256, WORK.top + 40, 495, 455)
-"""The columns of the folder's files and of recent ones."""
+LEFT: Final = Area(7, WORK.top + 40, 247, WORK.bottom - 8)
+"""The column of the folder's files."""
 
 MOST_ROWS: Final = LEFT.height // ROW_LINES
-CHARACTERS: Final = (LEFT.width - 2 * MARGIN) // CHARACTER
-ACROSS: Final = (RIGHT.right - LEFT.left - 2 * MARGIN) // CHARACTER
+CHARACTERS: Final = (LEFT.width - 1 - 2 * MARGIN) // CHARACTER
+
+RIGHT: Final = 256
+EXAMPLES_DOWN: Final = 224
+"""Lines from the heading of the recent files to the heading of the examples."""
+
+RECENT_PLACES: Final = tuple(
+    Area(left, top, left + TILE_ELEMENTS - 1, top + TILE_LINES - 1)
+    for top in (WORK.top + ROW_LINES, WORK.top + ROW_LINES + TILE_LINES)
+    for left in (RIGHT, RIGHT + TILE_ELEMENTS + 4)
+)
+EXAMPLE_PLACES: Final = tuple(
+    each._replace(top=each.top + EXAMPLES_DOWN, bottom=each.bottom + EXAMPLES_DOWN) for each in RECENT_PLACES
+)
+"""The places of the tiles below their two headings. Without recent files, the examples take their places."""
+
+TURNING: Final = Area(RECENT_PLACES[1].left, WORK.top, RECENT_PLACES[1].right, WORK.top + ROW_LINES - 1)
+"""The place of the row that turns to other recent files, beside their heading."""
+
+TIMES: Final = 2
+PREVIEW: Final = Area(
+    RIGHT,
+    WORK.top + EXAMPLES_DOWN,
+    EXAMPLE_PLACES[-1].right,
+    WORK.top + EXAMPLES_DOWN + TIMES * LINES + 2 * MARGIN + NAME_LINES,
+)
+"""The place of the larger picture, which is so many times as large as the picture on a tile."""
 
 MESH_SCALES: Final = ("0.001", "0.01", "0.0254", "0.3048", "1", "10", "100", "1000")
 """The factors for the coordinates of mesh files that can be pointed at."""
 
-UP: Final = ".."
-RIG: Final = "rig"
-PICTURE_KIND: Final = "picture"
-
-RECENT: Final = "recent "
-"""The beginning of the keys of recent files."""
+RECENT: Final = "recent"
+EXAMPLE: Final = "example"
+WITHOUT_PICTURE: Final = (FOLDER, RIG, "paints")
+"""The kinds of files without a small picture."""
 
 FOLDER_LETTERS: Final = 36
 """Letters of the folder in a hint."""
@@ -94,31 +115,28 @@ LONGEST_DATE: Final = 6
 LONGEST_KIND: Final = 7
 """Letters of a date, and of a kind."""
 
-FRAME: Final = 4
-THUMBNAIL_LINES: Final = 168
-THUMBNAIL_ELEMENTS: Final = 224
-THUMBNAIL: Final = Area(
-    RIGHT.left + MARGIN - FRAME,
-    RIGHT.bottom + 1 - MARGIN - THUMBNAIL_LINES - 2 * FRAME,
-    RIGHT.left + MARGIN + THUMBNAIL_ELEMENTS + FRAME - 1,
-    RIGHT.bottom - MARGIN,
-)
-"""The largest size of the small picture of a picture file, and its area with a frame.
-
-Smaller pictures stand at the lower left.
-"""
-
-FIRST_BORROWED: Final = BACKGROUND + 1
-MOST_COLORS: Final = 500
-"""Assumed: the most colors of the small picture; more take longer, and are not seen."""
-
-PART_OF_BUDGET: Final = 0.1
-"""Limit: the part of the memory budget to read a picture file for its small picture."""
-
-SIZES: Final = (1, 2, 4)
-"""The sizes of exported images, in sizes of the display."""
+SIZES: Final = (SIZE, (1920, 1080), (3840, 2160))
+"""The sizes of exported images that can be pointed at."""
 
 TICKS_TO_EXPORT: Final = 2
+TICKS_TO_REST: Final = 6
+"""Assumed: so many ticks after the pointer came to a row, it rests there: a tenth of a second."""
+
+
+class File(NamedTuple):
+    """A file, its kind (see `Openable`), and when it changed last, in seconds since 1970; 0 if unknown."""
+
+    path: Path
+    kind: str
+    changed: float
+
+    @classmethod
+    def of(cls, path: Path, kind: str) -> File:
+        """A file as it is now. The folder of a scene changes with its scene file."""
+        changed = 0.0
+        with suppress(OSError):
+            changed = (path / SCENE_FILE if path.is_dir() else path).stat().st_mtime
+        return cls(path, kind, changed)
 
 
 class FileScreen(Screen):
@@ -132,214 +150,205 @@ class FileScreen(Screen):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._files: list[Openable] = []
-        self._recent: list[Openable] = []
-        self._notes: dict[Path, tuple[bool, str]] = {}
-        """Whether each file that was shown is a rig, and the date of its last change."""
-        self._page = 0
-        self._thumbnail: tuple[Path, str, SmallPicture | None] | None = None
-        """The picture file that was read last, its caption, and its small picture, if it could be read."""
-        self._size = self._own_size = size_of_display(session)
-        self._smooth = SMOOTHNESS
-        self._ticks_to_export = 0
-        """How many ticks remain until the image is exported; 0 if none is to be exported."""
+        self._files: list[File] = []
+        self._recent: list[File] = []
+        self._examples = [File.of(folder, "scene") for folder in example_scenes().values()]
+        self._left: Sequence[str] = ()
+        """The date of the last session that was not closed; empty without such a session."""
+        self._pages = {"": 0, RECENT: 0}
+        self._gallery = Gallery[Hashable]()
+        self._size, self._smooth = SIZE, SMOOTHNESS
+        self._exports: list[tuple[str, Scene]] = []
+        """The names and the scenes of the images that are still to be exported."""
+        self._ticks_to_export = self._count = 0
+        self._lit, self._rested = "", 0
+        """The row under the pointer, and for how many ticks the pointer has been on it."""
 
     def enter(self) -> None:
-        self._look_up_recent()
+        self._look_up()
         try:
             self._list(self.session.folder)
         except InputError as error:
             self.session.warn(error)
 
     def leave(self) -> None:
-        if self._ticks_to_export:
+        while self._exports:
             self._export()
+        self._gallery.keep([self._key(each, 1) for each in (*self._recent, *self._examples)])
 
-    def _look_up_recent(self) -> None:
-        recent = [Openable(path, kind_of(path)) for path in recent_files() if may_reach(self.session, path)]
-        self._recent = [each for each in recent if each.kind]
+    def _look_up(self) -> None:
+        """Look up the recent files, and the sessions that were not closed."""
+        # A scene is opened by its folder, and saved by its scene file.
+        recent = [path.parent if path.name == SCENE_FILE else path for path in recent_files()]
+        reached = [path for path in dict.fromkeys(recent) if may_reach(self.session, path)]
+        self._recent = [File.of(path, kind) for path in reached if (kind := kind_of(path))]
+        session = self.session
+        # The files of another session may be anywhere.
+        may_recover = session.autosave is not None and session.is_at_hand and not session.outlives_window
+        self._left = [short_date(written_at(each)) for each in left_sessions()[:1] if may_recover]
 
     def _list(self, folder: Path) -> None:
         """Show a folder as it is now. Raises InputError if it cannot be read."""
-        self._files = [each for each in openables_of(folder) if may_reach(self.session, each.path)]
+        openables = [each for each in openables_of(folder) if may_reach(self.session, each.path)]
+        self._files = [File.of(*each) for each in openables]
         self.session.folder = folder
-        self._page, self._notes, self._thumbnail = 0, {}, None
+        self._pages[""] = 0
 
-    def _shown_path(self, path: Path) -> str:
-        """A path as text. Users of another machine do not see the folders above the session's."""
-        root = self.session.root
-        if self.session.is_at_hand:
-            return str(path)
-        below = path.relative_to(root) if path.is_relative_to(root) else path.name
-        return str(Path(root.name or "/", below))
-
-    # Items and widgets.
+    # Lists and small pictures.
 
     def build(self, around: Surroundings) -> Content:
-        pointed = self._picture_of(around.lit)
-        shown = self._thumbnail_of(pointed)
+        recent, turning = self._paged(self._recent, RECENT, len(RECENT_PLACES))
+        wanted = [(each, 1) for each in (*recent, *self._examples)]
+        upper = [self._tile(*each, RECENT) for each in zip(recent, RECENT_PLACES, strict=False)]
+        places = EXAMPLE_PLACES if recent else RECENT_PLACES
+        lower = [self._tile(*each, EXAMPLE) for each in zip(self._examples, places, strict=False)]
+        if not recent:
+            upper, lower = lower, []
+        pointed = next((each for each in self._files if str(each.path) == around.lit), None)
+        if pointed is not None and pointed.kind not in WITHOUT_PICTURE:
+            wanted.append((pointed, TIMES))
+            preview = self._tile(pointed, PREVIEW, "preview", TIMES)
+            if preview.picture or preview.note:
+                lower = [preview]
         return Content(
-            items=self._items(shown),
-            loads=[] if shown is None else [(FIRST_BORROWED, shown[1].colors)],
+            items=self._items(),
+            loads=self._gallery.loads,
             rows=self._rows,
-            widgets=self._widgets(),
-            idle=partial(self._idle, pointed),
+            widgets=[*self._list_of_files(), *[each.at(TURNING) for each in turning], *upper, *lower],
+            idle=partial(self._idle, wanted, around.lit),
         )
 
-    def _items(self, shown: tuple[str, SmallPicture] | None) -> Sequence[Item]:
-        down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
-        folder = short_name(self._shown_path(self.session.folder), ACROSS)
+    def _items(self) -> list[Item]:
+        left, right, top = LEFT.left + 1 + MARGIN, RIGHT + FRAME, WORK.top + TEXT_DOWN
+        folder = short_name(self.session.shown(self.session.folder), CHARACTERS)
         items = [
-            text("OPEN", left, WORK.top + TEXT_DOWN, YELLOW),
-            text("RECENT", RIGHT.left + MARGIN, WORK.top + TEXT_DOWN, YELLOW),
-            text(folder, left, WORK.top + ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
-            filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
+            text("OPEN", left, top, YELLOW),
+            text(folder, left, top + ROW_LINES, LIGHT_GRAY),
+            text("EXAMPLES", right, top + (EXAMPLES_DOWN if self._recent else 0), YELLOW),
         ]
+        if self._recent:
+            items.append(text("RECENT", right, top, YELLOW))
         if not self._files:
-            items.append(
-                text("no scene, mesh or picture", left, down + ROW_LINES * self._has_way_up, LIGHT_GRAY)
-            )
-        if not self._recent:
-            items.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, LIGHT_GRAY))
-        if shown is not None:
-            caption, small = shown
-            lines, elements = small.full.shape[:2]
-            left, top = THUMBNAIL.left + FRAME, THUMBNAIL.bottom + 1 - FRAME - lines
-            around = Area(left - FRAME, top - FRAME, left + elements + FRAME - 1, THUMBNAIL.bottom)
-            items += [
-                text(caption, left, around.top - CHARACTER_LINES - FRAME, LIGHT_GRAY),
-                outline(around, SLATE),
-                small.item(FIRST_BORROWED, left, top),
-            ]
+            items.append(text("no scene, mesh or picture", left, LEFT.top + ROW_LINES, LIGHT_GRAY))
         return items
 
-    def _thumbnail_of(self, pointed: Path | None) -> tuple[str, SmallPicture] | None:
-        """The caption and the small picture of the picture file under the pointer, if it was read."""
-        if self._thumbnail is None:
-            return None
-        path, caption, small = self._thumbnail
-        return None if small is None or path != pointed else (caption, small)
-
-    def _picture_of(self, lit: str) -> Path | None:
-        """The picture file of a row, by the key of the row."""
-        pointed = lit.removeprefix(RECENT)
-        pictures = (path for path, kind in (*self._files, *self._recent) if kind == PICTURE_KIND)
-        return next((path for path in pictures if str(path) == pointed), None)
-
-    def _idle(self, path: Path | None) -> bool:
-        """Export an image, or read the picture file under the pointer."""
-        if self._ticks_to_export:
-            # A window shows the message after the first tick.
-            self._ticks_to_export -= 1
-            if not self._ticks_to_export:
-                self._export()
-                return True
-            return False
-        if path is None or (self._thumbnail is not None and self._thumbnail[0] == path):
-            return False
-        self._thumbnail = path, *self._read_thumbnail(path)
-        return self._thumbnail[2] is not None
-
-    def _read_thumbnail(self, path: Path) -> tuple[str, SmallPicture | None]:
-        """The caption and the small picture of a picture file; no picture if the file cannot be read."""
-        try:
-            self._check(path)
-            scene, picture = read_picture(path, limit=PART_OF_BUDGET)
-            shown = display_image(scene, picture)
-        except AutocolorError:
-            return "", None
-        shrunk = max(picture.lines / THUMBNAIL_LINES, picture.elements / THUMBNAIL_ELEMENTS, 1)
-        lines, elements = (max(1, round(size / shrunk)) for size in (picture.lines, picture.elements))
-        size = written_size(picture.size)
-        caption = f"{short_name(path.name, CHARACTERS - len(size) - 2)}  {size}"
-        return caption, SmallPicture(thumbnail(shown, lines, elements), MOST_COLORS)
-
-    @property
-    def _has_way_up(self) -> bool:
-        folder = self.session.folder
-        return folder.parent != folder and may_reach(self.session, folder.parent)
-
-    def _widgets(self) -> Sequence[Widget]:
-        rows: list[Widget] = []
-        if self._has_way_up:
-            above = Openable(self.session.folder.parent, FOLDER)
-            rows.append(self._row(above, UP))
+    def _list_of_files(self) -> Sequence[Widget]:
+        folder, above = self.session.folder, self.session.folder.parent
+        has_way_up = above != folder and may_reach(self.session, above)
+        rows = [self._row(File(above, FOLDER, 0), "..")] if has_way_up else []
         room = MOST_ROWS - len(rows)
-        if len(self._files) > room:
-            room -= 1
-        pages = [self._files[first : first + room] for first in range(0, len(self._files), room)]
-        page = min(self._page, len(pages) - 1)
-        rows += [self._row(each) for each in pages[page]] if pages else []
-        if len(pages) > 1:
-            help = "A click turns to the next page of files; at the left end, to the page before."
-            rows.append(page_choice(help, page, len(pages), partial(setattr, self, "_page")))
-        recent = [self._row(each, key=RECENT) for each in self._recent]
-        return [*_placed(rows, LEFT), *_placed(recent, RIGHT)]
+        files, turning = self._paged(self._files, "", room - (len(self._files) > room))
+        return laid_out([*rows, *[self._row(each, each.path.name) for each in files], *turning], LEFT)
 
-    def _row(self, openable: Openable, shown: str = "", key: str = "") -> Widget:
-        path, kind = openable
+    def _paged(self, files: Sequence[File], name: str, size: int) -> tuple[Sequence[File], list[Widget]]:
+        """The files of the present page of a list, and the row that turns to others, if there are any."""
+        pages = [files[first : first + size] for first in range(0, len(files), size)] or [files]
+        page = min(self._pages[name], len(pages) - 1)
+        help = "A click turns to the next page of files; at the left end, to the page before."
+        turning = page_choice(help, page, len(pages), partial(self._pages.__setitem__, name))
+        return pages[page], [replace(turning, within=name)] if len(pages) > 1 else []
+
+    def _row(self, file: File, shown: str) -> Widget:
+        path, kind, changed = file
         if kind == FOLDER:
-            help, run = f"Look into {self._shown_path(path)}", partial(self._go_to, path)
+            help, run = f"Look into {self.session.shown(path)}", partial(self._go_to, path)
         else:
-            help, run = f"Open {self._shown_path(path)}", partial(self._open, path)
-        if path not in self._notes:
-            may_be_rig = path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE
-            self._notes[path] = may_be_rig and is_rig(path), date_of(path, kind)
-        rig, date = self._notes[path]
-        shown = shown or short_path(path, bool(key))
-        return FileRow(f"{key}{path}", help, run=run, value=RIG if rig else kind, shown=shown, date=date)
+            help, run = f"Open {self.session.shown(path)}", partial(self._open, path)
+        date = short_date(changed) if changed else ""
+        return FileRow(str(path), help, run=run, value=kind, shown=shown, date=date)
+
+    def _tile(self, file: File, area: Area, within: str, times: int = 1) -> Tile:
+        path, as_example = file.path, within == EXAMPLE
+        help = f"Open the example {path.name}" if as_example else f"Open {self.session.shown(path)}"
+        run = partial(self._open, path, as_example)
+        tile = Tile(path.name, help, within=within, run=run).at(area)
+        return self._gallery.framed(self._key(file, times), tile)
+
+    def _key(self, file: File, times: int) -> Hashable:
+        """The key of a small picture: another one is made if the file, or the way to read a mesh, changes."""
+        return file, times, self.session.mesh_up
+
+    def _small_picture(self, file: File, times: int) -> Small:
+        if not may_reach(self.session, file.path):
+            return NO_PICTURE
+        return small_picture_of_file(file.path, file.kind, self.session.mesh_up, times)
+
+    def _idle(self, wanted: Sequence[tuple[File, int]], lit: str) -> bool:
+        """Export an image, or make a small picture, once the pointer rests."""
+        self._rested = self._rested + 1 if lit == self._lit else 0
+        self._lit = lit
+        if not self._exports:
+            pictures = {self._key(*each): partial(self._small_picture, *each) for each in wanted}
+            return self._rested >= TICKS_TO_REST and self._gallery.advance(pictures)
+        # A window shows the message after the first tick.
+        self._ticks_to_export -= 1
+        if not self._ticks_to_export:
+            self._export()
+            return True
+        return False
+
+    # The menu.
 
     def _rows(self) -> Sequence[Widget]:
-        session = self.session
-        changed = "changed" if session.studio.is_changed else ""
+        session, scene, history = self.session, self.session.scene, self.session.studio.history
+        changed = "changed" if history.is_changed else ""
         scale = f"{session.mesh_scale:g}"
-        scales = tuple(sorted({*MESH_SCALES, scale}, key=float))
-        folder = short_name(self._shown_path(session.folder), FOLDER_LETTERS)
-        files = " and ".join(short_path(Path(name), True) for name in session.studio.history.files)
+        folder = short_name(session.shown(session.folder), FOLDER_LETTERS)
+        # Every scene file has the same name.
+        files = " and ".join("/".join(Path(name).parts[-2:]) for name in history.files)
         saves = f"Save to {files}; new files go to" if files else "Save the scene and the picture in"
-        size = written_size(self._size)
-        sizes = [(times * self._own_size[0], times * self._own_size[1]) for times in SIZES]
-        sizes = sorted({self._size, *(each for each in sizes if max(each) <= LARGEST)})
+        recovering = "Go on with the session that was not closed. Unsaved changes are left to be recovered."
         return [
-            Button(
-                "save",
-                f"{saves} {folder}",
-                run=partial(self._save, partial(save, session)),
-                value=changed,
-            ),
+            Button("save", f"{saves} {folder}", run=partial(self._save, save), value=changed),
             Entry(
                 "save as",
                 f"Save under another name in {folder}; from then on, save writes these files.",
-                value=free_name(session.scene.name, session.folder),
-                take=lambda name: self._save(lambda: save(session, name.strip())),
+                value=free_name(scene.name, session.folder),
+                take=lambda name: self._save(partial(save, name=name.strip())),
                 is_proposed=True,
             ),
             Button(
                 "save the rig",
                 f"Save all lights in {folder}, to put them on another scene.",
-                run=partial(self._save, partial(save_rig, session)),
+                run=partial(self._save, save_rig),
             ),
             Button(
                 "screenshot",
                 f"Save the picture as a numbered image in {folder}, without menus.",
-                run=partial(self._save, partial(save_image, session)),
+                run=partial(self._save, save_image),
             ),
             Gap("export gap"),
             Button(
                 "export",
                 f"Save the picture at this size and smoothness as an image in {folder}.",
-                run=self._begin_export,
+                run=lambda: self._begin_export({"": scene}),
+            ),
+            Button(
+                "every camera",
+                f"Save an image from each camera in {folder}.",
+                "" if scene.views else "no camera is saved yet; light and view saves one",
+                run=lambda: self._begin_export(
+                    {each.name: scene.with_taken_view(each.name) for each in scene.views}
+                ),
+            ),
+            Button(
+                "every variant",
+                f"Save an image of each variant in {folder}.",
+                "" if history.variants else "no variant is kept yet",
+                run=lambda: self._begin_export(
+                    {name: history.shown(name).present.scene for name in history.variants}
+                ),
             ),
             Choice(
                 "size",
-                "The width and height of an exported image: of the display, or two or four times as much.",
-                names=[written_size(each) for each in sizes],
-                present=size,
+                "The width and height of exported images.",
+                names=[written_size(each) for each in sorted({*SIZES, self._size})],
+                present=written_size(self._size),
                 choose=self._choose_size,
             ),
             Entry(
                 "other size",
-                f"Another width and height of an exported image, up to {LARGEST}, as in 1920x1080.",
+                f"Another width and height of exported images, up to {LARGEST}, as in 1280x960.",
                 take=self._choose_size,
             ),
             Choice(
@@ -347,13 +356,17 @@ class FileScreen(Screen):
                 "From 2 on, edges are smooth: each pixel is the mean of 4, 9 or 16, which takes longer.",
                 names=[str(each) for each in SMOOTHNESSES],
                 present=str(self._smooth),
-                choose=self._choose_smoothness,
+                choose=lambda name: setattr(self, "_smooth", int(name)),
             ),
             Gap("list gap"),
+            *[
+                Button("recover", recovering, run=partial(recover, session), value=date)
+                for date in self._left
+            ],
             Pair(
                 "refresh",
                 "Read the folder again, or go to the folder where files are saved.",
-                run=lambda: self._list(session.folder),
+                run=self._refresh,
                 other="home",
                 run_other=partial(self._go_to, session.root),
             ),
@@ -367,7 +380,7 @@ class FileScreen(Screen):
             Choice(
                 "mesh scale",
                 "A factor for the mesh files that you open: 0.001 from millimeters, 0.0254 from inches.",
-                names=scales,
+                names=sorted({*MESH_SCALES, scale}, key=float),
                 present=scale,
                 choose=lambda name: setattr(session, "mesh_scale", float(name)),
             ),
@@ -375,50 +388,57 @@ class FileScreen(Screen):
 
     # The actions of the rows.
 
+    def _refresh(self) -> None:
+        self._gallery.keep()
+        self._list(self.session.folder)
+
     def _go_to(self, folder: Path) -> None:
-        self._check(folder)
+        check_reach(self.session, folder, "a file to open")
         self._list(folder)
 
-    def _open(self, path: Path) -> None:
-        self._check(path)
+    def _open(self, path: Path, as_example: bool = False) -> None:
+        check_reach(self.session, path, "a file to open")
         before = self.session.screen
-        open_file(self.session, path)
+        open_file(self.session, path, as_example)
         if self.session.screen == before:
             # Paints turn to the screen that shows them.
             self.session.turn_to(PICTURE)
 
-    def _check(self, path: Path) -> None:
-        check_reach(self.session, path, "a file to open")
-
-    def _save(self, save: Callable[[], object]) -> None:
-        save()
-        self._look_up_recent()
+    def _save(self, save: Callable[[Session], object]) -> None:
+        save(self.session)
+        self._look_up()
         self._list(self.session.folder)
 
     def _choose_size(self, text: str) -> None:
         self._size = size_of(text.strip())
 
-    def _choose_smoothness(self, name: str) -> None:
-        self._smooth = int(name)
+    def _begin_export(self, scenes: Mapping[str, Scene]) -> None:
+        """Export images of scenes while nothing moves, named after the present scene and their own names."""
+        stem = file_stem(self.session.scene.name)
+        self._exports = [(f"{stem}-{file_stem(each)}" if each else stem, scenes[each]) for each in scenes]
+        self._count = len(scenes)
+        self._announce_export()
 
-    def _begin_export(self) -> None:
+    def _announce_export(self) -> None:
         self._ticks_to_export = TICKS_TO_EXPORT
+        (name, _), *others = self._exports
+        more = f", then {len(others)} more" if others else ""
         size = written_size(self._size)
-        self.session.tell(f"exporting {size}, smoothness {self._smooth} ...", persistent=True)
+        self.session.tell(f"exporting {name}, {size}, smoothness {self._smooth}{more} ...", persistent=True)
 
     def _export(self) -> None:
-        """Export the image; a message says its name, or why there is none."""
-        self._ticks_to_export = 0
+        """Export the next image; a message says its name, or why there is none."""
+        (name, scene), *self._exports = self._exports
         try:
-            export(self.session, self._size, self._smooth)
+            path = export(self.session, scene, name, self._size, self._smooth)
         except AutocolorError as error:
+            self._exports = []
             self.session.warn(error)
-
-
-def size_of_display(session: Session) -> tuple[int, int]:
-    """The elements and lines that the display shows."""
-    sizes = configuration_of(session.display)
-    return sizes.shown_elements, sizes.shown_lines
+            return
+        of = f", the last of {self._count}" if self._count > 1 else ""
+        self.session.tell(f"saved {path.name}{of}: {written_size(self._size)}, smoothness {self._smooth}")
+        if self._exports:
+            self._announce_export()
 
 
 def written_size(size: tuple[int, int]) -> str:
@@ -426,58 +446,36 @@ def written_size(size: tuple[int, int]) -> str:
     return "{}x{}".format(*size)
 
 
-def short_path(path: Path, with_folder: bool) -> str:
-    """The name of a file. Every scene file has the same name: `with_folder` shows its folder, too."""
-    return f"{path.parent.name}/{path.name}" if with_folder and path.name == SCENE_FILE else path.name
-
-
-def date_of(path: Path, kind: str) -> str:
-    """The date of the last change of a file, or of the scene file in a scene's folder; empty for folders."""
-    if kind == FOLDER:
-        return ""
-    file = path / SCENE_FILE if path.is_dir() else path
-    try:
-        return short_date(file.stat().st_mtime, time.time())
-    except (OSError, OverflowError, ValueError):
-        return ""
-
-
-def short_date(seconds: float, now: float) -> str:
+def short_date(seconds: float, now: float | None = None) -> str:
     """A local time in at most six characters: the hour today, the day this year, else the year.
 
-    Both times are in seconds since 1970. Raises OSError, OverflowError or ValueError for a year that the
-    system cannot compute.
+    Both times are in seconds since 1970. Empty for a year that the system cannot compute.
 
     >>> short_date(86_400 * 400, now=86_400 * 20_000)
     '1971'
     """
-    then, today = datetime.fromtimestamp(seconds), datetime.fromtimestamp(now)
+    try:
+        then, today = datetime.fromtimestamp(seconds), datetime.fromtimestamp(now or time.time())
+    except (OSError, OverflowError, ValueError):
+        return ""
     if then.date() == today.date():
         return f"{then:%H:%M}"
     return f"{then.day} {MONTHS[then.month - 1]}" if then.year == today.year else str(then.year)
-
-
-def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
-    """The rows with their areas, from the top; rows that do not fit are left out."""
-    placed = []
-    for number, row in enumerate(rows[:MOST_ROWS]):
-        top = area.top + ROW_LINES * number
-        placed.append(row.at(Area(area.left, top, area.right, top + ROW_LINES - 1)))
-    return placed
 
 
 @dataclass(frozen=True)
 class FileRow(Button):
     """A file, with its kind at the right, and before it the date, unless the name needs the room."""
 
+    row_lines: ClassVar[int] = ROW_LINES
     shown: str = ""
     date: str = ""
 
     def items(self, lit: bool) -> list[Item]:
-        items = self.row(lit, short_name(self.shown, CHARACTERS - len(self.value) - 1), self.value)
-        left, top, right, _ = self.area
-        end = right + 1 - MARGIN - CHARACTER * (LONGEST_KIND + 1)
-        start = end - CHARACTER * len(self.date)
-        if self.date and left + MARGIN + CHARACTER * (len(self.shown) + 1) <= end - CHARACTER * LONGEST_DATE:
-            items.append(text(self.date, start, top + TEXT_DOWN, LIGHT_GRAY, SLATE if lit else NIGHT))
-        return items
+        _, top, right, _ = self.area
+        room = CHARACTERS - LONGEST_KIND - LONGEST_DATE - 2
+        note = f"{self.date} {self.value:>{LONGEST_KIND}}" if len(self.shown) <= room else self.value
+        name = short_name(self.shown, CHARACTERS - len(self.value) - 1)
+        start = right + 1 - MARGIN - CHARACTER * len(note)
+        ground = SLATE if lit else NIGHT
+        return [*self.row(lit, name), text(note, start, top + TEXT_DOWN, LIGHT_GRAY, ground)]

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Final, Protocol
 
 from autocolor.errors import UsageError
+from autocolor.scene.orbit import sides_of
 from autocolor.screens.board import Board
 from autocolor.screens.file_actions import read_again, save, save_image
 from autocolor.screens.input import Binding, Chord
-from autocolor.screens.picture.picture_edits import PictureEdits, sides_of
+from autocolor.screens.picture import picture_edits as edits
+from autocolor.screens.picture.picture_edits import CLOSER, TURN
 from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.screens.steps import compare, end_comparing, redo, undo
-from autocolor.screens.surface.painting import take_paint
+from autocolor.screens.surface.painting import blend, repaint, take_paint
 
 
 class Driven(Protocol):
@@ -19,7 +21,6 @@ class Driven(Protocol):
 
     session: Session
     board: Board
-    edits: PictureEdits
 
     def show_scene(self) -> None:
         """Let go of everything, and show the scene."""
@@ -82,10 +83,10 @@ def redo_step(viewer: Driven) -> None:
     redo(viewer.session)
 
 
-def view_again(viewer: Driven, back: bool) -> None:
+def go_to_view(viewer: Driven, back: bool) -> None:
     """Return to the view before, or forward to the view that was left."""
     viewer.show_scene()
-    viewer.edits.view_again(back)
+    edits.view_again(viewer.session, back)
 
 
 def reopen(viewer: Driven) -> None:
@@ -134,12 +135,8 @@ def paste(viewer: Driven) -> None:
     viewer.board.paste(text)
 
 
-TURN: Final = 5.0
 FINE_TURN: Final = 1.0
-"""Degrees for each press of a key that turns, and with Shift."""
-
-CLOSER: Final = 0.9
-"""The ratio of distances for each press of a key that moves closer."""
+"""Degrees for each press of a key that turns, with Shift."""
 
 BLEND: Final = 0.05
 """The step of the blend for each press of its keys."""
@@ -180,71 +177,71 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding(
         (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
         "turn around the object; finely with Shift",
-        lambda viewer, number: viewer.edits.turn((-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
+        lambda viewer, number: edits.turn(viewer.session, (-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
         label="Left, Right",
         held=True,
     ),
     Binding(
         (Chord("up"), Chord("down"), Chord("up", shift=True), Chord("down", shift=True)),
         "look from above, from below; finely with Shift",
-        lambda viewer, number: viewer.edits.turn(0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
+        lambda viewer, number: edits.turn(viewer.session, 0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
         label="Up, Down",
         held=True,
     ),
     Binding(
         (Chord("+"), Chord("="), Chord("-")),
         "move closer, farther",
-        lambda viewer, number: viewer.edits.move((CLOSER, CLOSER, 1 / CLOSER)[number]),
+        lambda viewer, number: edits.move(viewer.session, (CLOSER, CLOSER, 1 / CLOSER)[number]),
         label="+ and -",
         held=True,
     ),
     Binding(
         (Chord(","), Chord(".")),
         "rotate the picture's horizontal axis",
-        lambda viewer, number: viewer.edits.tilt((-TURN, TURN)[number]),
+        lambda viewer, number: edits.tilt(viewer.session, (-1, 1)[number]),
         label="comma, period",
         held=True,
     ),
     Binding(
         (*(Chord(f"f{number}") for number in range(5, 10)), Chord("f6", shift=True)),
         "view from front, left (Shift: right), back, top, corner",
-        lambda viewer, number: viewer.edits.see_from(tuple(sides_of(viewer.session.scene))[number]),
+        lambda viewer, number: edits.see_from(viewer.session, list(sides_of(viewer.session.scene))[number]),
         label="F5 to F9",
     ),
     Binding(
         (Chord("r"), Chord("r", shift=True)),
         "rescale: fill the picture with the object, the surface",
-        lambda viewer, number: viewer.edits.rescale(number == 1),
+        lambda viewer, number: (edits.rescale, edits.rescale_surface)[number](viewer.session),
     ),
     Binding(
         (Chord("home"),),
         "the view as opened",
-        lambda viewer, _: viewer.edits.as_opened(),
+        lambda viewer, _: edits.as_opened(viewer.session),
         label="Home",
     ),
     Binding(
         tuple(Chord(str(digit)) for digit in range(1, 10)),
         "switch a light on or off",
-        lambda viewer, number: viewer.edits.switch_light(number),
+        lambda viewer, number: edits.switch_light(viewer.session, number),
         label="1 to 9",
     ),
     Binding(
         (Chord("s"), Chord("s", shift=True)),
         "select the next surface, the previous one",
-        lambda viewer, number: viewer.edits.choose_surface((1, -1)[number]),
+        lambda viewer, number: edits.next_surface(viewer.session, (1, -1)[number]),
         repeats=True,
     ),
     Binding(
         (Chord("["), Chord("]")),
         "blend: light color from a lower, from a higher level",
-        lambda viewer, number: viewer.edits.blend((-BLEND, BLEND)[number]),
+        lambda viewer, number: blend(viewer.session, (-BLEND, BLEND)[number]),
         label="[ and ]",
         held=True,
     ),
     Binding(
         (Chord("c"), Chord("c", shift=True)),
         "the next object color, the previous one",
-        lambda viewer, number: viewer.edits.repaint((1, -1)[number]),
+        lambda viewer, number: repaint(viewer.session, (1, -1)[number]),
         repeats=True,
     ),
     Binding(
@@ -261,7 +258,7 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding(
         (Chord("e"),),
         "hold the exposure (less light is darker), release it",
-        lambda viewer, _: viewer.edits.switch_exposure(),
+        lambda viewer, _: edits.switch_exposure(viewer.session),
     ),
     Binding(
         (Chord("w"),),
@@ -277,7 +274,7 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding(
         (Chord("left", alt=True), Chord("right", alt=True)),
         "the view before, and forward again",
-        lambda viewer, number: view_again(viewer, number == 0),
+        lambda viewer, number: go_to_view(viewer, number == 0),
         repeats=True,
     ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: undo_step(viewer), repeats=True),

@@ -11,7 +11,7 @@ from typing import Any, Final
 from autocolor.checks import Vector
 from autocolor.scene.columns import fields_of
 from autocolor.scene.following import names_to_follow
-from autocolor.scene.lights import AXIS_CONTROLS, EYE, Light
+from autocolor.scene.lights import AXIS_CONTROLS, EYE, Light, middle_between
 from autocolor.screens.session import Session, Solo
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Choice, Widget, titled
@@ -27,16 +27,13 @@ KIND: Final = "kind"
 WORLD: Final = "world"
 """The choice for a light that follows nothing."""
 
-AXIS_COLUMNS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
-"""The columns of lights with an axis."""
-
-EXCLUDING: Final = (
-    ("only_surfaces", "except_surfaces"),
-    ("except_surfaces", "only_surfaces"),
-    ("only_parts", "except_parts"),
-    ("except_parts", "only_parts"),
-)
-"""Pairs of columns that exclude each other: a column, and the column that it removes."""
+EXCLUDED_BY: Final = {
+    "only_surfaces": "except_surfaces",
+    "except_surfaces": "only_surfaces",
+    "only_parts": "except_parts",
+    "except_parts": "only_parts",
+}
+"""The column that a column removes."""
 
 DOWN: Final = (0.0, 0.0, -1.0)
 """The direction of a light that had none."""
@@ -50,17 +47,18 @@ def kind_of(light: Light) -> str:
 
 
 def parameter_rows(session: Session, light: Light, columns: Sequence[str]) -> list[Widget]:
-    """The rows of some columns of a light, in their order; KIND stands for the row of its kind."""
-    put, world = partial(_put_with_reach, session, light), session.world
-    rows = [
-        row
-        for name in columns
-        for row in (
-            [_kind_row(session, light)] if name == KIND else rows_of(light, put, world, columns=[name])
-        )
-    ]
-    # A light can follow only some lights, and keeps its place when it begins to follow.
-    rows = [_follows_row(session, light) if row.label == "follows" else row for row in rows]
+    """The rows of some columns of a light, in their order; KIND stands for the row of its kind.
+
+    The inner angle has a row if there is a cone, and the reach if there is a falloff.
+    """
+    put, own = partial(put_light, session, light.name), {KIND: _kind_row, "follows": _follows_row}
+    absent = {"inner_angle": light.cone_angle is None, "reach": light.falloff == "none"}
+    rows: list[Widget] = []
+    for name in columns:
+        if name in own:
+            rows.append(own[name](session, light))
+        elif not absent.get(name):
+            rows += rows_of(light, put, session.world, columns=[name])
     # A point source has no axis: rows that need an axis cannot be used, and say so.
     if kind_of(light) == POINT:
         needing = [name.replace("_", " ") for name in AXIS_CONTROLS]
@@ -79,39 +77,57 @@ def _kind_row(session: Session, light: Light) -> Choice:
     )
 
 
+def _follows_row(session: Session, light: Light) -> Choice:
+    """The choice of what a light follows: nothing, the eye, or the aim of a light that does not follow it."""
+
+    def choose(follows: str) -> None:
+        # The light stays where it is now.
+        followed = None if follows == WORLD else follows
+        session.edit(session.scene.with_light_following(light.name, followed))
+
+    return Choice(
+        "follows",
+        "The light moves with the eye, with the aim of another light, or with nothing: world.",
+        names=(WORLD, EYE, *names_to_follow(light, session.scene.lights)),
+        present=light.follows or WORLD,
+        choose=choose,
+    )
+
+
 def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
     """Change fields of a light. A light that is renamed stays chosen.
 
-    The inner angle is lowered or removed with the cone angle. A list of the only surfaces or parts to light
-    removes the list of exceptions, and vice versa.
+    A list of the only surfaces or parts to light removes the list of exceptions, and vice versa. The inner
+    angle is lowered or removed with the cone angle. A light with a falloff but no reach gets the object's
+    size as its reach.
     """
-    for chosen, other in EXCLUDING:
-        if changes.get(chosen) is not None:
-            changes = {other: None, **changes}
-    inner = session.scene.lights[name].inner_angle
-    if "cone_angle" in changes and inner is not None:
+    light = session.scene.lights[name]
+    others: dict[str, Any] = {
+        EXCLUDED_BY[each]: None for each in EXCLUDED_BY.keys() & changes if changes[each] is not None
+    }
+    if "cone_angle" in changes and light.inner_angle is not None:
         outer = changes["cone_angle"]
-        changes = {"inner_angle": None if outer is None else min(inner, outer), **changes}
-    session.edit(session.scene.with_light(name, **changes))
+        others["inner_angle"] = None if outer is None else min(light.inner_angle, outer)
+    if changes.get("falloff", "none") != "none" and light.reach is None:
+        others["reach"] = session.world.size
+    session.edit(session.scene.with_light(name, **{**others, **changes}))
     if "name" in changes:
-        session.choose_light(str(changes["name"]))
+        session.choose_light(changes["name"])
 
 
 def choose_kind(session: Session, light: Light, kind: str) -> None:
     """Change the kind of a light; a light with a direction or an aim goes on shining where it did."""
+    scene = session.scene
+    there = scene.lights_in_world[light.name]
     if kind == POINT:
         # Without an axis there is no concentration, no cone and no direction to come from.
-        put_light(session, light.name, {name: _default(name) for name in AXIS_COLUMNS})
-        return
-    scene = session.scene
-    light = scene.lights_in_world[light.name]
-    if kind == AIM:
-        scene = scene.with_light_in_world(
-            light.name, aim=aim_of(light, session.world.low, session.world.high)
-        )
+        defaults = {name: fields_of(Light)[name].default for name in ("direction", "aim", *AXIS_CONTROLS)}
+        session.edit(scene.with_light(light.name, **defaults))
+    elif kind == AIM:
+        aim = aim_of(there, session.world.low, session.world.high)
+        session.edit(scene.with_light_in_world(light.name, aim=aim))
     else:
-        scene = scene.with_light_in_world(light.name, direction=light.axis or DOWN)
-    session.edit(scene)
+        session.edit(scene.with_light_in_world(light.name, direction=there.axis or DOWN))
 
 
 def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
@@ -119,43 +135,15 @@ def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
 
     A directed light keeps its direction. `low` and `high` are the bounds of the object.
     """
-    middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
-    away = tuple(a - b for a, b in zip(middle, light.position, strict=True))
-    axis = light.axis or (DOWN if not any(away) else None)
-    if axis is None:
-        x, y, z = middle
-        return x, y, z
-    ahead = sum(a * b for a, b in zip(axis, away, strict=True))
-    distance = ahead if ahead > 0 else math.hypot(*away) or 1.0
-    x, y, z = (a + distance * b for a, b in zip(light.position, axis, strict=True))
+    middle = middle_between(low, high)
+    distance = math.dist(middle, light.position)
+    if light.axis is None and distance:
+        return middle
+    axis = light.axis or DOWN
+    ahead = sum(a * (m - p) for a, m, p in zip(axis, middle, light.position, strict=True))
+    distance = ahead if ahead > 0 else distance or 1.0
+    x, y, z = (p + distance * a for p, a in zip(light.position, axis, strict=True))
     return x, y, z
-
-
-def choose_follows(session: Session, name: str, follows: str) -> None:
-    """Let a light follow the eye, another light or nothing; it stays where it is now."""
-    session.edit(session.scene.with_light_following(name, None if follows == WORLD else follows))
-
-
-def _follows_row(session: Session, light: Light) -> Choice:
-    """The choice of what a light follows: nothing, the eye, or the aim of a light that does not follow it."""
-    return Choice(
-        "follows",
-        "The light moves with the eye, with the aim of another light, or with nothing: world.",
-        names=(WORLD, EYE, *names_to_follow(light, session.scene.lights)),
-        present=light.follows or WORLD,
-        choose=partial(choose_follows, session, light.name),
-    )
-
-
-def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) -> None:
-    """Change fields of a light. A light with a falloff but no reach gets the object's size as its reach."""
-    if changes.get("falloff", "none") != "none" and light.reach is None:
-        changes = {**changes, "reach": session.world.size}
-    put_light(session, light.name, changes)
-
-
-def _default(name: str) -> object:
-    return fields_of(Light)[name].default
 
 
 # Solo: one light on, and all others off.
@@ -171,14 +159,13 @@ def light_alone(session: Session, name: str) -> None:
     """Switch one light on and all others off; if it is alone, switch all as before."""
     scene, before, alone = session.scene, session.before_solo, solo_light(session)
     if before is not None and alone == name:
-        switches = [before.switches.get(light.name, light.on) for light in scene.lights]
-        lights = zip(scene.lights, switches, strict=True)
-        session.edit(scene.replace(lights=tuple([light.replace(on=on) for light, on in lights])))
+        lights = [light.replace(on=before.switches.get(light.name, light.on)) for light in scene.lights]
+        session.edit(scene.replace(lights=lights))
         session.tell("the lights are switched as before")
         return
     session.edit(scene.only_lights(name))
-    switches_now = {light.name: light.on for light in scene.lights}
-    session.before_solo = Solo(name, before.switches if before is not None and alone else switches_now)
+    switches = {light.name: light.on for light in scene.lights}
+    session.before_solo = Solo(name, before.switches if before is not None and alone else switches)
     session.tell(f"{titled('light', name)} alone; again: the lights as before")
 
 

@@ -1,24 +1,30 @@
-"""The lights screen: a list of all lights and every parameter of the chosen light, over the picture."""
+"""The lights screen: a list of all lights and every parameter of the chosen light, over the picture.
+
+Above the list are the arrangements, which replace all lights. While the pointer is over one of them, the
+picture shows it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from itertools import chain
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.errors import InputError, UsageError
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.legend import CORNERS
+from autocolor.scene.arrangements import ARRANGEMENTS, arranged
 from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import new_light_of
 from autocolor.scene.following import attached, detached
 from autocolor.scene.lights import HalfSpace, Light, free_name
+from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
+from autocolor.screens.cached import Cached
 from autocolor.screens.file_actions import save_rig
 from autocolor.screens.input import Gesture
 from autocolor.screens.light_parameters import KIND, all_lights_on, light_alone, parameter_rows, solo_light
@@ -29,54 +35,33 @@ from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import Session
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import (
-    BLACK,
-    CHARACTER,
-    GRAY,
-    LIGHT_GRAY,
-    NIGHT,
-    SCREEN,
-    SLATE,
-    WHITE,
-    YELLOW,
-    Area,
-    Item,
-    area_of,
-    filled,
-    fitted,
-    lines,
-    text,
-)
+from autocolor.widgets.items import GRAY, LIGHT_GRAY, SCREEN, YELLOW, Area, Item, area_of, lines
 from autocolor.widgets.menu import WORK, Section
+from autocolor.widgets.rows import INDENT, rows_of
 from autocolor.widgets.widget import (
-    BOX,
-    MARGIN,
     NOWHERE,
     ROW_LINES,
-    TEXT_DOWN,
     Button,
     Choice,
     Pair,
-    Place,
+    PanelButton,
     Switch,
     Widget,
-    box_items,
     page_choice,
-    short_name,
     titled,
 )
 
 FIRST: Final = ("on", "intensity", "concentration", "cone_angle", "inner_angle", "flaps")
 """The columns of a light that are edited most; their rows are always shown."""
 
-SECTIONS: Final[Mapping[str, Sequence[str]]] = {
-    "place & aim": (KIND, "position", "direction", "aim", "follows"),
-    "links": ("links",),
-}
-"""The columns of the sections of the menu. Further columns are in a section of their own."""
+PLACE: Final = (KIND, "position", "direction", "aim", "follows")
+"""The columns in the section of the place and the aim."""
 
-APART: Final = ("half_spaces",)
-"""The columns whose rows are not derived."""
+POINTS: Final = ("first", "second", "third")
+"""The points of the object that are picked for the plane of a new half-space."""
+
+PLANE: Final = "plane"
+"""The name of a new half-space."""
 
 
 class LightsScreen(OverPicture):
@@ -93,46 +78,66 @@ class LightsScreen(OverPicture):
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self._handles = LightHandles(session, WORK, has_rims=True)
-        self._picking = PlanePicking(session, WORK)
-        self._list = LightList(session)
+        self._list_is_open = True
+        self._points: list[Vector] | None = None
+        """The points of a plane that were picked; None while the user picks none."""
+        self._arranged: Cached[DisplayImage | None] = Cached()
 
     def build(self, around: Surroundings) -> Content:
-        content, marks, picking = super().build(around), self._handles, self._picking
-        marks.area = WORK if around.has_menu else SCREEN
+        content, widgets = super().build(around), self._list() if around.has_panels else ()
+        self._handles.area = WORK if around.has_menu else SCREEN
+        if self.session.chosen_light is None:
+            # Without a light, there is nothing that a plane could bound.
+            self._points = None
         # The list covers handles, also where they are within reach of a place beside it.
-        covered = self._list.area if around.has_panels else NOWHERE
-        handles = () if picking.is_on else marks.handles()
+        covered = Area(*widgets[0].area[:2], *widgets[-1].area[2:]) if widgets else NOWHERE
+        marks: Sequence[Item] = ()
+        handles = [*content.handles, *self._handles.handles()] if self._points is None else []
+        if self._points is not None:
+            marks = plane_items(self._points, self.session.scene.view)
+        elif self.other_image(around) is None:
+            marks = self._handles.items()
         return replace(
             content,
-            items=[*content.items, *(picking if picking.is_on else marks).items()],
+            items=[*content.items, *marks],
             rows=self._rows,
-            widgets=self._list.widgets() if around.has_panels else (),
+            widgets=widgets,
             handles=[each for each in handles if not covered.has(each.element, each.line)],
-            preferred=marks.preferred,
-            escape=picking.end,
+            preferred=self._handles.preferred,
+            escape=self._end_picking,
         )
 
+    def other_image(self, around: Surroundings) -> DisplayImage | None:
+        """The picture in the light of the arrangement under the pointer."""
+        within, _, name = around.lit.partition(".")
+        if within != "arrangements":
+            return super().other_image(around)
+        return self._arranged.of(partial(self._image_of, name), self.session.scene, ARRANGEMENTS[name])
+
+    def _image_of(self, arrangement: str) -> DisplayImage | None:
+        other, scene = arranged(self.session.scene, arrangement), self.session.scene
+        # After the click, the marks of the new lights are shown at once.
+        return None if other.equals(scene) else self.session.studio.image_of(other)
+
     def pick(self, gesture: Gesture) -> None:
-        if self._picking.is_on:
-            self._picking.pick(gesture.element, gesture.line)
-        else:
+        if self._points is None:
             super().pick(gesture)
+        else:
+            self._pick_point(gesture)
 
     def leave(self) -> None:
-        self._picking.end()
+        self._end_picking()
+
+    # The menu.
 
     def _rows(self) -> Sequence[Widget]:
-        light = self.session.chosen_light
+        session, light = self.session, self.session.chosen_light
         if light is None:
-            return [
-                Button(
-                    "add a light", "A light above the side of the eye, aimed at the object.", run=self._add
-                )
-            ]
-        session, first = self.session, parameter_rows(self.session, light, FIRST)
-        shown = {*FIRST, *APART, *chain.from_iterable(SECTIONS.values())}
-        others = [name for name in fields_of(Light) if name not in shown]
-        rows: list[Widget] = [
+            help = "A light above the side of the eye, aimed at the object."
+            return [Button("add a light", help, run=self._add)]
+        of = partial(parameter_rows, session, light)
+        others = [name for name in fields_of(Light) if name not in (*FIRST, *PLACE, "links", "half_spaces")]
+        return [
             Choice(
                 "light",
                 "The light whose parameters are shown.",
@@ -140,17 +145,18 @@ class LightsScreen(OverPicture):
                 present=light.name,
                 choose=session.choose_light,
             ),
-            *first,
-            exposure_row(self.edits),
-        ]
-        for title, columns in {**SECTIONS, "other settings": others}.items():
-            rows += [Section(title), *parameter_rows(session, light, columns)]
-        rows += [Section("half-spaces"), *half_space_rows(session, light, self._picking)]
-        return [*rows, Section("add & remove"), *self._verbs()]
-
-    def _verbs(self) -> list[Widget]:
-        session = self.session
-        return [
+            *of(FIRST),
+            exposure_row(session),
+            Section("place & aim"),
+            *of(PLACE),
+            Section("links"),
+            *of(["links"]),
+            Section("other settings"),
+            *of(others),
+            Section("half-spaces"),
+            self._picking_row(),
+            *(row for each in light.half_spaces for row in half_space_rows(session, light, each)),
+            Section("add & remove"),
             Pair(
                 "add",
                 "Add another light, or a copy of this light.",
@@ -173,308 +179,203 @@ class LightsScreen(OverPicture):
         ]
 
     def _add(self) -> None:
-        light = new_light_of(self.session.scene)
-        scene = self.session.scene
-        self.session.edit(scene.replace(lights=(*scene.lights, light)))
-        self.session.choose_light(light.name)
-        self.session.tell(f"light added: {light.name}")
-        name_light(self.session, light.name, is_new=True)
+        light, scene = new_light_of(self.session.scene), self.session.scene
+        self._show_new(scene.replace(lights=(*scene.lights, light)), f"light added: {light.name}")
 
     def _copy(self) -> None:
-        self._append(self.session.scene.with_copied_light(self.session.light_name).lights, "copied")
+        name = self.session.light_name
+        scene = self.session.scene.with_copied_light(name)
+        self._show_new(scene, f"{titled('light', name)} copied: {scene.lights[-1].name}")
 
     def _mirror(self) -> None:
         # The two sides of a product are at the ends of its shorter horizontal extent.
         (x, y, _), (to_x, to_y, _) = self.session.scene.object_bounds
-        axis = "x" if to_x - x <= to_y - y else "y"
-        lights = self.session.scene.with_mirrored_light(self.session.light_name, axis).lights
-        self._append(lights, f"mirrored along {axis}")
+        axis, name = "x" if to_x - x <= to_y - y else "y", self.session.light_name
+        scene = self.session.scene.with_mirrored_light(name, axis)
+        self._show_new(scene, f"{titled('light', name)} mirrored along {axis}: {scene.lights[-1].name}")
 
-    def _append(self, lights: tuple[Light, ...], done: str) -> None:
-        before = self.session.light_name
-        self.session.edit(self.session.scene.replace(lights=lights))
-        self.session.choose_light(lights[-1].name)
-        self.session.tell(f"{titled('light', before)} {done}: {lights[-1].name}")
-        name_light(self.session, lights[-1].name, is_new=True)
+    def _show_new(self, scene: Scene, message: str) -> None:
+        """Show a scene whose last light is new, choose that light, and ask for its name."""
+        name = scene.lights[-1].name
+        self.session.edit(scene)
+        self.session.choose_light(name)
+        self.session.tell(message)
+        name_light(self.session, name, is_new=True)
 
     def _remove(self) -> None:
         name = self.session.light_name
         self.session.edit(self.session.scene.without_light(name))
         self.session.tell(f"{titled('light', name)} removed; undo brings it back")
 
+    # The panel: the arrangements, and the list with a row for each light.
 
-# The light list: a panel over the picture with a row for each light.
+    def _list(self) -> list[Widget]:
+        """The rows of the panel with their areas, from the top. Folded, it has its heading alone."""
+        session, lights = self.session, self.session.scene.lights
+        fold = partial(setattr, self, "_list_is_open")
+        help = "Fold the arrangements and the list of all lights, or show them."
+        rows: list[list[Widget]] = [[Section("light list", help, is_open=self._list_is_open, fold=fold)]]
+        if self._list_is_open:
+            buttons: list[Widget] = [
+                PanelButton(
+                    name,
+                    f"{arrangement.help}; a click replaces all lights.",
+                    within="arrangements",
+                    run=partial(self._arrange, name),
+                )
+                for name, arrangement in ARRANGEMENTS.items()
+            ]
+            rows += [buttons[:3], buttons[3:]]
+            names = [light.name for light in lights]
+            pages = -(-len(lights) // LIGHTS_A_PAGE)
+            page = names.index(session.light_name) // LIGHTS_A_PAGE if lights else 0
+            first = page * LIGHTS_A_PAGE
+            for number, light in enumerate(lights[first : first + LIGHTS_A_PAGE], first + 1):
+                rows.append(light_row(session, number, light))
+            if pages > 1:
 
-LIST_AT: Final = Place(8, WORK.top + 8)
-"""The upper left corner of the list."""
+                def turn(page: int) -> None:
+                    session.choose_light(names[page * LIGHTS_A_PAGE])
 
-NAME_CHARACTERS: Final = 12
-NUMBER_CHARACTERS: Final = 5
-TRACK: Final = 56
-"""Elements of the bar of an intensity."""
+                rows.append([page_choice("Another page of lights.", page, pages, turn)])
+            if lights:
+                run = partial(all_lights_on, session)
+                rows.append([Button("all lights on", "Switch all lights on.", run=run)])
+        return [widget for number, row in enumerate(rows) for widget in placed(row, number)]
 
-SOLO: Final = "solo"
-SPACE: Final = 6
-"""Elements between the parts of a row."""
+    def _arrange(self, name: str) -> None:
+        session = self.session
+        session.edit(arranged(session.scene, name))
+        session.choose_light(session.scene.lights[0].name)
+        session.tell(f"arrangement {name}; undo brings the former lights back")
 
-LIST_ELEMENTS: Final = (
-    2 * MARGIN + CHARACTER * (3 + NAME_CHARACTERS + NUMBER_CHARACTERS + len(SOLO)) + BOX + TRACK + 4 * SPACE
-)
+    # Picking a plane: three points of the object, one after the other, for the plane of a new half-space.
+
+    def _picking_row(self) -> Button:
+        if self._points is None:
+            help = "Pick three points of a plane that bounds the light."
+            return Button("half spaces", help, run=partial(self._ask_for_point, []), value="add")
+        value = f"{len(self._points)}/{len(POINTS)}"
+        help = "Stop picking points."
+        return Button("half spaces", help, run=self._end_picking, value=value, is_chosen=True)
+
+    def _ask_for_point(self, points: list[Vector], problem: str = "") -> None:
+        """Go on with some points of the plane, and ask for the next point."""
+        self._points = points
+        prompt = f"pick the {POINTS[len(points)]} point of the plane on the object; Esc ends"
+        self.session.tell(problem + prompt, is_warning=bool(problem), persistent=True)
+
+    def _end_picking(self) -> bool:
+        """End picking; returns False if the user did not pick."""
+        was_on, self._points = self._points is not None, None
+        if was_on:
+            self.session.tell("")
+        return was_on
+
+    def _pick_point(self, gesture: Gesture) -> None:
+        """Take the point that is seen at a place; the third point makes a half-space of the chosen light.
+
+        Raises InputError if the three points are in one line; the third must then be picked again.
+        """
+        session, scene, points = self.session, self.session.scene, self._points or []
+        seen = session.studio.seen_at(gesture.line, gesture.element)
+        if seen is None:
+            self._ask_for_point(points, "no point is seen there; ")
+            return
+        points = [*points, seen.point]
+        if len(points) < len(POINTS):
+            self._ask_for_point(points)
+            return
+        light = scene.lights_in_world[session.light_name]
+        name = free_name(PLANE, [each.name for each in light.half_spaces])
+        half_space = facing(HalfSpace.through(name, *points), light)
+        session.edit(scene.with_light(light.name, half_spaces={name: half_space}))
+        session.tell(f"half-space added to {light.name}: {name}")
+        self._points = None
+
+
+# The rows of the panel.
+
+LIST_LEFT: Final = 8
+LIST_TOP: Final = WORK.top + 8
+LIST_ELEMENTS: Final = (136, 72, 44)
+"""The elements of a light's name with its switch, of its intensity, and of solo."""
 
 LIGHTS_A_PAGE: Final = 12
 """Assumed: lights of a page of the list; more would cover too much of the picture."""
 
 
-class LightList:
-    """The list of the lights of a session. Folded, it shows its heading alone."""
+class IntensityBar(Bar):
+    """The intensity of a light, without its label, which all lights share."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self._is_open = True
-        self._page: tuple[str, int] | None = None
-        """The light that was chosen when the user turned to another page, and the page."""
+    def row(self, lit: bool, label: str = "", value: str = "", chosen: bool = False) -> list[Item]:
+        return super().row(lit, "", value, chosen)
 
-    @property
-    def area(self) -> Area:
-        """The area of the list; empty without lights."""
-        areas = [each.area for each in self.widgets()]
-        return Area(*areas[0][:2], *areas[-1][2:]) if areas else NOWHERE
 
-    def widgets(self) -> list[Widget]:
-        """The rows of the list with their areas: the heading, the lights, and the rows for all lights."""
-        lights = self._session.scene.lights
-        if not lights:
-            return []
-        help = "Fold the list of all lights, or show it."
-        rows: list[Widget] = [Section("light list", help, is_open=self._is_open, fold=self._fold)]
-        if self._is_open:
-            pages = -(-len(lights) // LIGHTS_A_PAGE)
-            page = min(self._shown_page, pages - 1)
-            first = page * LIGHTS_A_PAGE
-            for number, light in enumerate(lights[first : first + LIGHTS_A_PAGE], start=first + 1):
-                rows.append(self._row(number, light))
-            if pages > 1:
-                rows.append(page_choice("The next page of lights.", page, pages, self._turn))
-            rows.append(
-                Button("all lights on", "Switch all lights on.", run=partial(all_lights_on, self._session))
-            )
-        left, top = LIST_AT
-        right = left + LIST_ELEMENTS - 1
-        return [
-            row.at(Area(left, top + ROW_LINES * number, right, top + ROW_LINES * (number + 1) - 1))
-            for number, row in enumerate(rows)
-        ]
+def placed(row: Sequence[Widget], number: int) -> list[Widget]:
+    """The widgets of a row of the panel with their areas; buttons alone share the row evenly."""
+    is_light = isinstance(row[0], Switch)
+    widths = LIST_ELEMENTS if is_light else (sum(LIST_ELEMENTS) // len(row),) * len(row)
+    left, top, widgets = LIST_LEFT, LIST_TOP + number * ROW_LINES, list[Widget]()
+    for widget, width in zip(row, widths, strict=True):
+        widgets.append(widget.at(Area(left, top, left + width - 1, top + ROW_LINES - 1)))
+        left += width
+    return widgets
 
-    def _row(self, number: int, light: Light) -> LightRow:
-        session, name = self._session, light.name
-        bar = fields_of(Light)["intensity"].bar
-        assert bar is not None
-        return LightRow(
-            name,
-            f"{name}: name: choose, again: rename; box: on, off; bar: intensity; {SOLO}: alone, and back",
+
+def light_row(session: Session, number: int, light: Light) -> list[Widget]:
+    """A light in the list: its number and name with its switch, its intensity, and solo."""
+    name, within = light.name, f"light list.{light.name}"
+    bar = fields_of(Light)["intensity"].bar
+    assert bar is not None
+
+    def put(**changes: Any) -> None:
+        session.edit(session.scene.with_light(name, **changes))
+
+    def choose() -> None:
+        if name == session.light_name:
+            name_light(session, name)
+        session.choose_light(name)
+
+    return [
+        Switch(
+            f"{number:2} {name}",
+            f"{name}: a click chooses the light, another renames it; the box: on, off.",
             within="light list",
+            is_on=light.on,
+            flip=lambda: put(on=not light.on),
+            choose=choose,
+            is_chosen=name == session.light_name,
+        ),
+        IntensityBar(
+            "intensity",
+            f"The intensity of {name}.",
+            within=within,
             value=light.intensity,
             **bar._asdict(),
-            put=lambda intensity: session.edit(session.scene.with_light(name, intensity=intensity)),
-            numeral=number,
-            is_on=light.on,
-            is_chosen=name == session.light_name,
-            is_solo=name == solo_light(session),
-            choose=partial(self._choose, name),
-            switch=lambda: session.edit(session.scene.with_light(name, on=not light.on)),
-            solo=partial(light_alone, session, name),
-        )
-
-    def _choose(self, name: str) -> None:
-        if name == self._session.light_name:
-            name_light(self._session, name)
-        self._session.choose_light(name)
-
-    @property
-    def _shown_page(self) -> int:
-        """The page that the user turned to, until another light is chosen; else the chosen light's page."""
-        session = self._session
-        if self._page is not None and self._page[0] == session.light_name:
-            return self._page[1]
-        names = [light.name for light in session.scene.lights]
-        return names.index(session.light_name) // LIGHTS_A_PAGE
-
-    def _turn(self, page: int) -> None:
-        self._page = self._session.light_name, page
-
-    def _fold(self, is_open: bool) -> None:
-        self._is_open = is_open
+            put=lambda intensity: put(intensity=intensity),
+            word=LIGHT_GRAY if light.on else GRAY,
+        ),
+        Button(
+            "solo",
+            f"Switch {name} on alone; again: the lights as before.",
+            within=within,
+            run=partial(light_alone, session, name),
+            is_chosen=name == solo_light(session),
+        ),
+    ]
 
 
-@dataclass(frozen=True)
-class LightRow(Bar):
-    """A light in the list: its numeral and name, its switch, its intensity with a bar, and solo.
-
-    A pick on the name calls `choose`, on the box `switch`, on the bar `put`, and on the word at the end
-    `solo`. A drag that begins on the bar sets the intensity.
-    """
-
-    numeral: int = 1
-    is_on: bool = True
-    is_chosen: bool = False
-    is_solo: bool = False
-    choose: Callable[[], object] = lambda: None
-    switch: Callable[[], object] = lambda: None
-    solo: Callable[[], object] = lambda: None
-
-    @property
-    def _name_end(self) -> int:
-        """The element after the numeral and the name."""
-        return self.area.left + MARGIN + CHARACTER * (3 + NAME_CHARACTERS) + SPACE // 2
-
-    @property
-    def _box(self) -> Area:
-        left, top = self._name_end + SPACE // 2, self.area.top + (ROW_LINES - BOX) // 2
-        return Area(left, top, left + BOX - 1, top + BOX - 1)
-
-    @property
-    def _track(self) -> Area:
-        left, middle = self._box.right + 1 + SPACE, self.area.top + ROW_LINES // 2
-        return Area(left, middle - 3, left + TRACK - 1, middle + 2)
-
-    @property
-    def _solo_start(self) -> int:
-        return self.area.right + 1 - MARGIN - CHARACTER * len(SOLO)
-
-    def items(self, lit: bool) -> list[Item]:
-        left, top, *_ = self.area
-        ground, ink = SLATE if lit else NIGHT, WHITE if self.is_on else LIGHT_GRAY
-        named = self.area._replace(right=self._name_end - 1)
-        name_ground, name_ink = (WHITE, BLACK) if self.is_chosen else (ground, ink)
-        name = f"{self.numeral:2} {short_name(self.label, NAME_CHARACTERS)}"
-        track, down = self._track, top + TEXT_DOWN
-        end = track.left + round(self.share * (track.width - 1))
-        number = fitted(self.number, NUMBER_CHARACTERS)
-        return [
-            filled(self.area, ground),
-            filled(named, name_ground),
-            text(name, left + MARGIN, down, name_ink, name_ground),
-            *box_items(self._box, self.is_on, ink, ground),
-            filled(track, GRAY if lit else SLATE),
-            filled(track._replace(right=end), YELLOW if lit else LIGHT_GRAY if self.is_on else GRAY),
-            text(number, self._solo_start - SPACE - CHARACTER * len(number), down, ink, ground),
-            text(SOLO, self._solo_start, down, YELLOW if self.is_solo else LIGHT_GRAY, ground),
-        ]
-
-    def pick(self, place: Place) -> object:
-        element = place.element
-        if element < self._name_end:
-            return self.choose()
-        if element < self._track.left - SPACE // 2:
-            return self.switch()
-        if element < self._solo_start - SPACE // 2:
-            return self.put(self.value_at(element)) if self._is_on_track(element) else None
-        return self.solo()
-
-    def drag(self, start: Place, last: Place, place: Place) -> object:
-        return self.put(self.value_at(place.element)) if self._is_on_track(start.element) else None
-
-    def _is_on_track(self, element: int) -> bool:
-        return self._track.left - SPACE // 2 <= element <= self._track.right + SPACE // 2
+# Half-spaces: the marks of their points while these are picked, and their rows.
 
 
-# Picking a plane: three points of the object, one after the other, for the plane of a new half-space.
-
-NAME: Final = "plane"
-POINTS: Final = 3
-ORDINALS: Final = ("first", "second", "third")
-
-
-class PlanePicking:
-    """The picked points of a plane. `is_on` while the user picks."""
-
-    def __init__(self, session: Session, area: Area) -> None:
-        self.session = session
-        self.is_on = False
-        self._area = area
-        self._points: list[Vector] = []
-
-    @property
-    def count(self) -> int:
-        """How many points were picked."""
-        return len(self._points)
-
-    @property
-    def prompt(self) -> str:
-        """The message that asks for the next point."""
-        return f"pick the {ORDINALS[self.count]} point of the plane on the object; Esc ends"
-
-    def begin(self) -> None:
-        """Ask for the first point."""
-        self.is_on, self._points = True, []
-        self.session.tell(self.prompt, persistent=True)
-
-    def end(self) -> bool:
-        """End picking; returns False if the user did not pick."""
-        was_on, self.is_on, self._points = self.is_on, False, []
-        if was_on:
-            self.session.tell("")
-        return was_on
-
-    def pick(self, element: int, line: int) -> None:
-        """Take the point that is seen at a place; the third one makes the half-space of the chosen light.
-
-        Raises InputError if the three points are in one line, and UsageError without a light; the third must
-        then be picked again.
-        """
-        session, seen = self.session, self.session.studio.seen_at(line, element)
-        if seen is None:
-            session.tell(f"no point is seen there; {self.prompt}", is_warning=True, persistent=True)
-            return
-        self._points.append(seen.point)
-        if self.count < POINTS:
-            session.tell(self.prompt, persistent=True)
-            return
-        try:
-            self._add()
-        except (InputError, UsageError):
-            self._points.pop()
-            raise
-        self.is_on, self._points = False, []
-
-    def items(self) -> Sequence[Item]:
-        """A cross at each point, and lines between them."""
-        places = places_of(np.array(self._points).reshape(-1, 3), self.session.scene.view)
-        items = [lines([places], YELLOW, area_of(places, limit=self._area))] if len(places) > 1 else []
-        for element, line in np.floor(places + 0.5).astype(int).tolist():
-            items += highlight_items(element, line, self._area)
-        return items
-
-    def _add(self) -> None:
-        session, scene = self.session, self.session.scene
-        if not session.light_name:
-            raise UsageError("to have a half-space, there must be a light; add one")
-        light = scene.lights_in_world[session.light_name]
-        name = free_name(NAME, [each.name for each in light.half_spaces])
-        half_space = HalfSpace.through(name, *self._points)
-        if not is_lit_side(half_space, light, scene.view):
-            half_space = turned(half_space)
-        session.edit(session.scene.with_light(light.name, half_spaces={name: half_space}))
-        session.tell(f"half-space added to {light.name}: {name}")
-
-
-def turned(half_space: HalfSpace) -> HalfSpace:
-    """The half-space whose other side is lit."""
-    x, y, z = half_space.direction
-    return half_space.replace(direction=(0.0 - x, 0.0 - y, 0.0 - z))
-
-
-def is_lit_side(half_space: HalfSpace, light: Light, view: View) -> bool:
-    """Whether the light is on the lit side of a half-space, or the eye if the light is on the plane."""
-    places = [light.position, view.eye]
-    if light.at_infinity and light.axis is not None:
-        places[0] = tuple(p - a for p, a in zip(half_space.point, light.axis, strict=True))  # type: ignore[assignment]
-    for place in places:
-        toward = np.array(place) - np.array(half_space.point)
-        ahead = float(toward @ np.array(half_space.direction))
-        if abs(ahead) > 1e-6 * float(np.abs(toward).max()):
-            return ahead > 0
-    return True
+def plane_items(points: Sequence[Vector], view: View) -> list[Item]:
+    """A cross at each point, and lines between them."""
+    places = places_of(np.array(points).reshape(-1, 3), view)
+    items = [lines([places], YELLOW, area_of(places, limit=WORK))] if len(places) > 1 else []
+    for element, line in np.floor(places + 0.5).astype(int).tolist():
+        items += highlight_items(element, line, WORK)
+    return items
 
 
 def places_of(points: Floats, view: View) -> Floats:
@@ -487,83 +388,48 @@ def places_of(points: Floats, view: View) -> Floats:
     return places
 
 
-# The rows of a light's half-spaces: for each half-space its switch, edge width, carried, turn and remove.
+def facing(half_space: HalfSpace, light: Light) -> HalfSpace:
+    """The half-space turned to its light."""
+    to_light = np.array(light.position) - half_space.point
+    if light.at_infinity and light.axis is not None:
+        to_light = -np.array(light.axis)
+    return half_space if to_light @ half_space.direction >= 0 else turned(half_space)
 
 
-@dataclass(frozen=True)
-class VerbsOf(Pair):
-    """Two buttons for the thing named `of`; other things on the screen have buttons of the same labels."""
-
-    of: str = ""
-
-    @property
-    def key(self) -> str:
-        return f"{self.label} {self.of}"
+def turned(half_space: HalfSpace) -> HalfSpace:
+    """The half-space whose other side is lit."""
+    x, y, z = half_space.direction
+    return half_space.replace(direction=(0.0 - x, 0.0 - y, 0.0 - z))
 
 
-def half_space_rows(session: Session, light: Light, picking: PlanePicking) -> list[Widget]:
-    """The row that adds a half-space, and the rows of all half-spaces of a light."""
-    rows: list[Widget] = [
-        Button(
-            "half spaces",
-            "Stop picking points."
-            if picking.is_on
-            else "Pick three points of a plane that bounds the light.",
-            run=picking.end if picking.is_on else picking.begin,
-            value=f"{picking.count}/{POINTS}" if picking.is_on else "add",
-            is_chosen=picking.is_on,
-        )
-    ]
-    for half_space in light.half_spaces:
-        rows += _rows_of(session, light, half_space)
-    return rows
-
-
-def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widget]:
+def half_space_rows(session: Session, light: Light, half_space: HalfSpace) -> list[Widget]:
+    """The rows of a half-space of a light: its switch, and below it the others."""
     name = half_space.name
-    helps = {key: field.help for key, field in fields_of(HalfSpace).items()}
-    usual = session.world.range_of_lengths(is_zero_left_out=False)
 
-    def put(**changes: object) -> None:
+    def put(changes: Mapping[str, object] | HalfSpace | None) -> None:
         session.edit(session.scene.with_light(light.name, half_spaces={name: changes}))  # type: ignore[dict-item]
 
+    def put_fields(changes: Mapping[str, object]) -> None:
+        if "carried" in changes:
+            # The plane stays where it is.
+            carry: Callable[[HalfSpace, Light], HalfSpace] = attached if changes["carried"] else detached
+            put(carry(half_space, session.scene.lights_in_world[light.name]))
+        else:
+            put(changes)
+
+    def remove() -> None:
+        put(None)
+        session.tell(f"{titled('half-space', name)} removed; undo brings it back")
+
+    switch, *others = rows_of(half_space, put_fields, session.world, columns=("on", "edge_width", "carried"))
+    pair = Pair(
+        "turn",
+        f"Light the other side of {name}; or remove {name}.",
+        run=lambda: put(turned(half_space)),
+        other="remove",
+        run_other=remove,
+    )
     return [
-        Switch(name, helps["on"], is_on=half_space.on, flip=lambda: put(on=not half_space.on)),
-        Bar(
-            f"{name} width",
-            helps["edge_width"],
-            value=half_space.edge_width,
-            **usual._asdict(),
-            put=lambda width: put(edge_width=width),
-        ),
-        Switch(
-            f"{name} carried",
-            helps["carried"],
-            is_on=half_space.carried,
-            flip=partial(_carry, session, light, half_space),
-        ),
-        VerbsOf(
-            "turn",
-            f"Light the other side of {name}; or remove {name}.",
-            run=partial(_put_row, session, light, turned(half_space)),
-            other="remove",
-            run_other=partial(_remove, session, light, name),
-            of=name,
-        ),
+        replace(switch, label=name, within="half-spaces"),
+        *(replace(row, label=INDENT + row.label, within=f"half-spaces.{name}") for row in (*others, pair)),
     ]
-
-
-def _carry(session: Session, light: Light, half_space: HalfSpace) -> None:
-    """Attach a half-space to a light, or detach it; its plane stays where it is."""
-    there = session.scene.lights_in_world[light.name]
-    carry = detached if half_space.carried else attached
-    _put_row(session, light, carry(half_space, there))
-
-
-def _put_row(session: Session, light: Light, half_space: HalfSpace) -> None:
-    session.edit(session.scene.with_light(light.name, half_spaces={half_space.name: half_space}))
-
-
-def _remove(session: Session, light: Light, name: str) -> None:
-    session.edit(session.scene.with_light(light.name, half_spaces={name: None}))
-    session.tell(f"{titled('half-space', name)} removed; undo brings it back")

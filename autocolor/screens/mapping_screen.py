@@ -6,29 +6,31 @@ mappings can be tried. No mapping renders the picture again.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache, partial
-from typing import Any, Final, NamedTuple
+from functools import partial
+from typing import Any, Final
 
 import numpy as np
 
 from autocolor.arrays import Floats, Singles
 from autocolor.errors import UsageError
-from autocolor.lighting.picture import Picture
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.intensity import (
     fractions_by_surface,
     has_extent,
     held_exposure,
     held_name,
     mapped_ranges,
+    ranges_of,
     stage_surfaces,
 )
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
+from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
-from autocolor.screens.screen import Content, Handle, Surroundings
+from autocolor.screens.screen import Content, Handle, Sample, Surroundings
 from autocolor.screens.session import Session
 from autocolor.widgets.bars import Bar, bar_within
 from autocolor.widgets.items import (
@@ -69,18 +71,38 @@ class MappingScreen(OverPicture):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self._has_panel = True
-        """Whether the panel of the curve is shown."""
         self._touched: int | None = None
         """The number of the point that was touched last."""
+        self._curve: Cached[tuple[Singles, Singles]] = Cached()
+        """The levels and the shares of the curve that is shown; see `curve_of`."""
 
     def build(self, around: Surroundings) -> Content:
-        content = super().build(around)
-        self._has_panel = around.has_panels
+        content = replace(super().build(around), rows=self._rows)
         if not around.has_panels:
-            return replace(content, rows=self._rows)
-        items = [*content.items, *panel_items(self._curve())]
-        return replace(content, items=items, rows=self._rows, handles=self._handles())
+            return content
+        handles = [
+            Handle(
+                number,
+                *place_of(x, y),
+                f"intensity {x:.2f}, level {y:.2f}",
+                place=partial(self._move, number),
+                hold=partial(setattr, self, "_touched", number),
+            )
+            for number, (x, y) in enumerate(self._points)
+        ]
+        name, exposure = self.session.surface_name, self.session.scene.exposure
+        title = f"{short_name(name, MOST_CHARACTERS)}: {range_state(exposure, name)}" if name else ""
+        items = [*content.items, *panel_items(title, *self._levels_and_shares(), self._points, self._touched)]
+        return replace(
+            content,
+            items=items,
+            handles=[*content.handles, *handles],
+            hint=self._hint,
+            sample=self._sample,
+            pick=self._pick,
+            drag=self._drag,
+            wheel=self._wheel,
+        )
 
     # The menu.
 
@@ -93,167 +115,106 @@ class MappingScreen(OverPicture):
                 "How intensities are mapped to levels; a click in the curve gives it points.",
                 names=(*CURVES, POINTS),
                 present=scene.mapping if isinstance(scene.mapping, str) else POINTS,
-                choose=self._choose,
+                choose=lambda name: self._put(
+                    {"mapping": self._points_of_curve() if name == POINTS else name}
+                ),
             ),
-            Button("straight", "A straight curve with five points.", run=partial(self._put_points, STRAIGHT)),
-            self._remove_row(),
+            Button(
+                "straight",
+                "A straight curve, whose points are its two ends.",
+                run=lambda: self._put({"mapping": STRAIGHT}),
+            ),
+            Button(
+                "remove point",
+                "Remove the yellow point, which was touched last.",
+                "" if self._removes else "click at a point between the ends of the curve first",
+                run=self._remove,
+            ),
             Button(
                 "as in 1983",
                 "What the paper describes, and nothing since: normals linear in the picture, Phong's model.",
                 run=lambda: session.edit(session.scene.as_in_1983()),
             ),
             Gap("exposure gap"),
-            exposure_row(self.edits),
-            *surface_rows(session, self._put),
-            *held_rows(session, self._put),
+            exposure_row(session),
+            *surface_rows(session),
+            *held_rows(session),
             Gap("scene gap"),
             *rows_of(scene, self._put, session.world, leave_out=others),
             Section("display words"),
             *rows_of(scene, self._put, session.world, columns=OF_DISPLAY),
         ]
 
-    def _remove_row(self) -> Widget:
-        touched, points = self._touched, self._points()
-        why_not = ""
-        if not points:
-            why_not = "a curve with a name has no points; click in it to make some"
-        elif touched is None or touched >= len(points):
-            why_not = "click at a point of the curve first"
-        elif touched in (0, len(points) - 1):
-            why_not = "the ends of the curve stay; click at another point first"
-        return Button(
-            "remove point",
-            "Remove the yellow point, which was touched last.",
-            why_not,
-            run=self._remove,
-        )
+    @property
+    def _removes(self) -> bool:
+        """Whether a point was touched that can be removed; the ends of the curve stay."""
+        return self._touched is not None and 0 < self._touched < len(self._points) - 1
+
+    def _remove(self) -> None:
+        touched, self._touched = self._touched, None
+        self._put({"mapping": [point for n, point in enumerate(self._points) if n != touched]})
+
+    def _put(self, changes: Mapping[str, Any]) -> None:
+        self.session.edit(self.session.scene.replace(**changes))
 
     # The curve.
 
-    def _handles(self) -> Sequence[Handle]:
-        return [
-            Handle(
-                number,
-                *place_of(x, y),
-                f"intensity {x:.2f}, level {y:.2f}",
-                place=partial(self._move, number),
-                hold=partial(setattr, self, "_touched", number),
-            )
-            for number, (x, y) in enumerate(self._points())
-        ]
+    # On the panel, gestures are for the curve, and beside it for the picture.
 
-    def pick(self, gesture: Gesture) -> None:
-        if not self._is_on_panel(gesture.element, gesture.line):
-            super().pick(gesture)
-            return
-        self._add(gesture)
+    def _pick(self, gesture: Gesture) -> None:
+        if PANEL.has(gesture.element, gesture.line):
+            self._add(gesture)
+        else:
+            self.pick(gesture)
 
-    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        if not self._is_on_panel(start.element, start.line):
-            super().drag(start, last, now)
+    def _drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+        if not PANEL.has(start.element, start.line):
+            self.drag(start, last, now)
             return
         if last is start:
             self._add(start)
         if self._touched is not None:
             self._move(self._touched, now.element, now.line)
 
-    def wheel(self, gesture: Gesture) -> None:
-        if not self._is_on_panel(gesture.element, gesture.line):
-            super().wheel(gesture)
+    def _wheel(self, gesture: Gesture) -> None:
+        if not PANEL.has(gesture.element, gesture.line):
+            self.wheel(gesture)
 
-    def hint(self, element: int, line: int) -> str:
-        if not self._is_on_panel(element, line):
-            return super().hint(element, line)
+    def _hint(self, element: int, line: int) -> str:
+        if not PANEL.has(element, line):
+            return self.hint(element, line)
         x, y = fractions_of(element, line)
         return f"intensity {x:.2f}, level {y:.2f}: a click or a drag makes a point here"
 
-    def _is_on_panel(self, element: int, line: int) -> bool:
-        return self._has_panel and PANEL.has(element, line)
+    def _sample(self, element: int, line: int) -> Sample | None:
+        return None if PANEL.has(element, line) else self.sample(element, line)
 
+    @property
     def _points(self) -> CurvePoints:
         """The points of the curve; none if the curve has a name."""
         mapping = self.session.scene.mapping
         return () if isinstance(mapping, str) else mapping
 
-    def _put_points(self, points: CurvePoints) -> None:
-        self._put({"mapping": points})
+    def _points_of_curve(self) -> CurvePoints:
+        """The points of the curve; of a curve with a name, the fewest that look like it."""
+        return self._points or fewest_points(self._levels_and_shares()[0])
+
+    def _levels_and_shares(self) -> tuple[Singles, Singles]:
+        image, surface = self.session.studio.display_image, self.session.surface_name
+        return self._curve.of(partial(curve_of, image, surface), image, surface)
 
     def _add(self, gesture: Gesture) -> None:
         """Make a point at the place of a gesture. A curve with a name gets points first."""
-        points = self._points() or self._points_of_curve()
-        points, self._touched = added(points, *fractions_of(gesture.element, gesture.line))
-        self._put_points(points)
+        place = fractions_of(gesture.element, gesture.line)
+        points, self._touched = added(self._points_of_curve(), *place)
+        self._put({"mapping": points})
 
     def _move(self, number: int, element: int, line: int) -> None:
         """Move a point to a place, if the curve still has the point."""
-        if number < len(self._points()):
-            points = moved(self._points(), number, *fractions_of(element, line))
-            self._put_points(points)
-            x, y = points[number]
-            self.session.tell(f"intensity {x:.2f}, level {y:.2f}")
-
-    def _points_of_curve(self) -> CurvePoints:
-        """Points on the curve that is shown."""
-        xs = np.array([x for x, _ in STRAIGHT], np.float32)
-        ys = np.interp(xs, ACROSS, self._curve().levels)
-        rising = np.maximum.accumulate(ys.round(4).clip(0, 1))
-        return tuple(zip(xs.tolist(), rising.tolist(), strict=True))
-
-    def _curve(self) -> Curve:
-        session, scene = self.session, self.session.scene
-        mapped = session.studio.display_image.mapped
-        name, stage = session.surface_name, stage_surfaces(scene)
-        curve = curve_of(mapped, scene.scaling, scene.mapping, scene.exposure, name, stage)
-        levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
-        state = range_state(scene.exposure, session.surface_name)
-        return Curve(session.surface_name, levels, shares, self._points(), self._touched, state)
-
-    # The actions of the rows.
-
-    def _choose(self, name: str) -> None:
-        if name != POINTS:
-            self._put({"mapping": name})
-        elif not self._points():
-            self._put_points(self._points_of_curve())
-
-    def _remove(self) -> None:
-        if self._touched is not None:
-            self._put_points(removed(self._points(), self._touched))
-            self._touched = None
-
-    def _put(self, changes: Mapping[str, Any]) -> None:
-        self.session.edit(self.session.scene.replace(**changes))
-
-
-@lru_cache(maxsize=4)
-def curve_of(
-    picture: Picture,
-    scaling: str,
-    mapping: str | CurvePoints,
-    exposure: Exposure,
-    name: str,
-    stage: frozenset[int] = frozenset(),
-) -> tuple[Singles, Singles] | None:
-    """The levels, 0 to 1, and the shares of the intensities of a surface across its mapped range.
-
-    None for a surface that is not visible.
-    """
-    number = picture.surfaces.index(name) + 1 if name in picture.surfaces else 0
-    extents = mapped_ranges(picture, scaling, exposure, stage=stage)
-    curves = fractions_by_surface(picture, extents, mapping, only=number)
-    if number not in curves:
-        return None
-    low, high = extents[number]
-    # The sum may exceed the maximum by rounding, where a curve has no value.
-    levels = curves[number](np.minimum(np.float32(low) + ACROSS * np.float32(high - low), np.float32(high)))
-    return levels, _shares(picture, number, low, high)
-
-
-@lru_cache(maxsize=4)
-def _shares(picture: Picture, number: int, low: float, high: float) -> Singles:
-    """How often the intensities of a visible surface are seen, which no curve changes."""
-    seen = next(surface for surface in picture.slices if surface.surface_number == number)
-    return shares_of(picture.relative[seen.pixels], low, high)
+        if number < len(self._points):
+            points = moved(self._points, number, *fractions_of(element, line))
+            self._put({"mapping": points})
+            self.session.tell("intensity {:.2f}, level {:.2f}".format(*points[number]))
 
 
 # The panel of the curve: intensity rises to the right, the level upward. Behind the curve are the
@@ -273,38 +234,24 @@ MOST_COUNTED: Final = 20_000
 """Assumed: intensities that are counted; the panel cannot tell more apart."""
 
 
-class Curve(NamedTuple):
-    """The contents of the panel.
-
-    `levels` are fractions at ACROSS, `shares` are how often the intensities there are seen, 0 to 1.
-    """
-
-    surface: str
-    levels: Singles
-    shares: Singles
-    points: CurvePoints
-    touched: int | None
-    """The number of the point that was touched last."""
-    state: str = AUTO
-    """What `range_state` says of the surface."""
-
-
-def panel_items(curve: Curve) -> list[Item]:
-    """The items of the panel."""
-    title = f"{short_name(curve.surface, MOST_CHARACTERS)}: {curve.state}" if curve.surface else ""
-    top = PANEL.top + 4
+def panel_items(
+    title: str, levels: Singles, shares: Singles, points: CurvePoints, touched: int | None
+) -> list[Item]:
+    """The items of the panel. The point with the number `touched` is yellow."""
+    tops, top = _places_of(shares), PANEL.top + 4
+    feet = np.column_stack([tops[:, 0], np.full(len(tops), float(CURVE.bottom))])
     items = [
         filled(PANEL, NIGHT),
         outline(PANEL, SLATE),
         text("level", CURVE.left, top, LIGHT_GRAY),
-        _share_item(curve.shares),
+        text(title, CURVE.right + 1 - CHARACTER * len(title), top, LIGHT_GRAY),
+        segments(np.hstack([feet, tops]), SLATE, CURVE),
         outline(CURVE, SLATE),
-        lines([_places_of(ACROSS, curve.levels)], YELLOW, CURVE),
+        lines([_places_of(levels)], YELLOW, CURVE),
     ]
-    items.append(text(title, CURVE.right + 1 - CHARACTER * len(title), top, LIGHT_GRAY))
-    for number, (x, y) in enumerate(curve.points):
+    for number, (x, y) in enumerate(points):
         element, line = place_of(x, y)
-        word = YELLOW if number == curve.touched else WHITE
+        word = YELLOW if number == touched else WHITE
         items.append(filled(Area(element - 2, line - 2, element + 2, line + 2).within(PANEL), word))
     return items
 
@@ -321,18 +268,28 @@ def fractions_of(element: int, line: int) -> tuple[float, float]:
     return min(1.0, max(0.0, x)), min(1.0, max(0.0, y))
 
 
-def _places_of(xs: Singles, ys: Singles) -> Floats:
-    """The elements and lines, (n, 2), of fractions."""
-    return np.column_stack(
-        [CURVE.left + xs * (CURVE.width - 1.0), CURVE.bottom - ys * (CURVE.height - 1.0)]
-    ).astype(np.float64)
+def _places_of(ys: Singles) -> Floats:
+    """The elements and lines, (n, 2), of fractions at ACROSS."""
+    xs = CURVE.left + ACROSS * (CURVE.width - 1.0)
+    return np.column_stack([xs, CURVE.bottom - ys * (CURVE.height - 1.0)]).astype(np.float64)
 
 
-def _share_item(shares: Singles) -> Item:
-    """A line upward for each element, as long as intensities there are frequent."""
-    tops = _places_of(ACROSS, shares)
-    feet = np.column_stack([tops[:, 0], np.full(len(tops), float(CURVE.bottom))])
-    return segments(np.hstack([feet, tops]), SLATE, CURVE)
+def curve_of(image: DisplayImage, surface: str) -> tuple[Singles, Singles]:
+    """The levels, 0 to 1, and the shares of the intensities at ACROSS of the mapped range of a surface.
+
+    A surface that is not visible has a straight line, and no shares.
+    """
+    picture = image.mapped
+    number = picture.surfaces.index(surface) + 1 if surface in picture.surfaces else 0
+    seen = next((each for each in picture.slices if each.surface_number == number), None)
+    if seen is None:
+        return ACROSS, np.zeros_like(ACROSS)
+    extents = ranges_of(image.scene, picture)
+    low, high = (np.float32(limit) for limit in extents[number])
+    curve = fractions_by_surface(picture, extents, image.scene.mapping, only=number)[number]
+    # The sum may exceed the maximum by rounding, where a curve has no value.
+    levels = curve(np.minimum(low + ACROSS * (high - low), high))
+    return levels, shares_of(picture.relative[seen.pixels], *extents[number])
 
 
 def shares_of(intensities: Singles, low: float, high: float) -> Singles:
@@ -347,10 +304,14 @@ def shares_of(intensities: Singles, low: float, high: float) -> Singles:
     return shares
 
 
-# Moving, adding and removing points: the curve always rises. Its first point is at the fraction 0 of the
-# intensities and its last point at 1; both stay there.
+# Making and moving points: the curve always rises. Its first point is at the fraction 0 of the intensities
+# and its last point at 1; both stay there.
 
-STRAIGHT: Final[CurvePoints] = ((0.0, 0.0), (0.25, 0.25), (0.5, 0.5), (0.75, 0.75), (1.0, 1.0))
+STRAIGHT: Final[CurvePoints] = ((0.0, 0.0), (1.0, 1.0))
+
+LARGEST_MISS: Final = 0.02
+"""Assumed: how far the points of a curve with a name may be from it; nobody sees the difference."""
+
 LEAST_APART: Final = 0.01
 """Assumed: the smallest distance of two points along the intensities."""
 
@@ -358,16 +319,29 @@ DIGITS: Final = 4
 """Decimals of a point; pointing is not as fine."""
 
 
+def fewest_points(levels: Singles) -> CurvePoints:
+    """The two ends of a curve, and only as many further points as keep within LARGEST_MISS of it.
+
+    `levels` has the fractions of levels at ACROSS.
+    """
+    ys = np.maximum.accumulate(levels.round(DIGITS).clip(0, 1))
+    places = [0, len(ACROSS) - 1]
+    while True:
+        misses = np.abs(np.interp(ACROSS, ACROSS[places], ys[places]) - ys)
+        if misses.max() <= LARGEST_MISS:
+            points = zip(ACROSS[places].astype(float), ys[places].astype(float), strict=True)
+            return tuple((round(x, DIGITS), round(y, DIGITS)) for x, y in points)
+        places = sorted([*places, int(misses.argmax())])
+
+
 def moved(points: CurvePoints, number: int, x: float, y: float) -> CurvePoints:
     """The points with point `number` moved to fractions of intensity and level, as far as neighbors allow."""
-    last = len(points) - 1
-    low = points[number - 1][1] if number else 0.0
-    high = points[number + 1][1] if number < last else 1.0
-    if 0 < number < last:
-        least, most = points[number - 1][0] + LEAST_APART, points[number + 1][0] - LEAST_APART
-        x = min(max(x, least), most) if least <= most else points[number][0]
-    else:
+    around = ((0.0, 0.0), *points, (1.0, 1.0))
+    (left, low), (right, high) = around[number], around[number + 2]
+    if number in (0, len(points) - 1) or right - left < 2 * LEAST_APART:
         x = points[number][0]
+    else:
+        x = min(max(x, left + LEAST_APART), right - LEAST_APART)
     point = round(x, DIGITS), round(min(max(y, low), high), DIGITS)
     return (*points[:number], point, *points[number + 1 :])
 
@@ -378,21 +352,11 @@ def added(points: CurvePoints, x: float, y: float) -> tuple[CurvePoints, int]:
     If another point is closer than LEAST_APART along the intensities, that point gets the new level instead.
     Points below get at most the new level, and points above at least the new level.
     """
-    number = min(range(len(points)), key=lambda number: abs(points[number][0] - x))
-    if abs(points[number][0] - x) < LEAST_APART:
-        x, above = points[number][0], points[number + 1 :]
-    else:
-        number = sum(other < x for other, _ in points)
-        above = points[number:]
-    x, y = round(x, DIGITS), round(y, DIGITS)
-    low = [(other, min(level, y)) for other, level in points[:number]]
-    high = [(other, max(level, y)) for other, level in above]
-    return (*low, (x, y), *high), number
-
-
-def removed(points: CurvePoints, number: int) -> CurvePoints:
-    """The points without point `number`; the ends stay."""
-    return (*points[:number], *points[number + 1 :]) if 0 < number < len(points) - 1 else points
+    nearest = min([other for other, _ in points], key=lambda other: abs(other - x))
+    x, y = nearest if abs(nearest - x) < LEAST_APART else round(x, DIGITS), round(y, DIGITS)
+    below = [(other, min(level, y)) for other, level in points if other < x]
+    above = [(other, max(level, y)) for other, level in points if other > x]
+    return (*below, (x, y), *above), len(below)
 
 
 # The rows of the menu for the ranges of intensities that the exposure holds.
@@ -407,8 +371,13 @@ BEYOND: Final = 2.0
 """Assumed: the bars go to twice the largest intensity of the picture."""
 
 
-def surface_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -> list[Widget]:
+def surface_rows(session: Session) -> list[Widget]:
     """A row for each surface in use, whose box says whether its range is held; none for many surfaces."""
+
+    def flip(name: str) -> None:
+        session.edit(session.scene.replace(exposure=flipped(session, name)))
+        session.tell(f"the range of {name}: {range_state(session.scene.exposure, name)}")
+
     names = [name for name in session.studio.level_ranges if name != OBJECT]
     return [
         Switch(
@@ -416,17 +385,12 @@ def surface_rows(session: Session, put: Callable[[Mapping[str, object]], object]
             f"Hold the range of {name}, or let it follow the picture; beside the box: show its curve.",
             within="exposure",
             is_on=bool(held_name(session.scene.exposure, name)),
-            flip=partial(_flip, session, name, put),
+            flip=partial(flip, name),
             choose=partial(session.choose_surface, name),
             is_chosen=name == session.surface_name,
         )
         for name in (names if len(names) <= MOST_LISTED else ())
     ]
-
-
-def _flip(session: Session, name: str, put: Callable[[Mapping[str, object]], object]) -> None:
-    put({"exposure": flipped(session, name)})
-    session.tell(f"the range of {name}: {range_state(session.scene.exposure, name)}")
 
 
 def range_state(exposure: Exposure, name: str) -> str:
@@ -452,20 +416,18 @@ def flipped(session: Session, name: str) -> Exposure:
         held.pop(name)
         return tuple(held.items()) or studio.history.following_exposure
     picture = studio.display_image.mapped
-    number = picture.surfaces.index(name) + 1
-    extent = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage_surfaces(scene)).get(number)
-    if extent is None:
-        raise UsageError(f"{name} has no range to hold, as no point of it is seen; turn it to the eye first")
-    if not has_extent(extent):
-        raise UsageError(f"{name} has no range to hold, as all its points have one intensity; light it first")
+    stage, number = stage_surfaces(scene), picture.surfaces.index(name) + 1
+    extent = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage).get(number)
+    if extent is None or not has_extent(extent):
+        raise UsageError(f"{name} has no range to hold; light it, and turn it to the eye")
     if isinstance(scene.exposure, str) and scene.exposure != AUTO:
-        ranges = held_exposure(picture, scene.scaling, scene.exposure, stage_surfaces(scene))
+        ranges = held_exposure(picture, scene.scaling, scene.exposure, stage)
         held = {} if isinstance(ranges, str) else dict(ranges)
     held[name] = (extent.minimum * picture.scale, extent.maximum * picture.scale)
     return tuple(held.items())
 
 
-def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -> list[Widget]:
+def held_rows(session: Session) -> list[Widget]:
     """The rows of the held minimum and maximum of the chosen surface; none if the exposure is not held."""
     exposure = session.scene.exposure
     name = held_name(exposure, session.surface_name)
@@ -476,9 +438,9 @@ def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -
     usual = bar_within(0.0, BEYOND * (session.studio.display_image.mapped.ranges.whole.maximum or 1.0))
     least = LEAST_SHARE * usual.high
 
-    def hold(minimum: float, maximum: float) -> object:
+    def hold(minimum: float, maximum: float) -> None:
         limits = {**dict(exposure), name: (minimum, maximum)}
-        return put({"exposure": tuple(limits.items())})
+        session.edit(session.scene.replace(exposure=tuple(limits.items())))
 
     of = "all surfaces" if name == OBJECT else name
     return [

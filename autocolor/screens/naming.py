@@ -5,7 +5,7 @@ The name stands selected in the message line, where Return takes it. Users witho
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable
 
 from autocolor.screens.session import Session
 from autocolor.widgets.widget import Entry, titled
@@ -13,40 +13,39 @@ from autocolor.widgets.widget import Entry, titled
 
 def name_light(session: Session, name: str, is_new: bool = False) -> None:
     """Ask for a name of a light; with `is_new`, the name belongs to the step that made the light."""
-    session.naming = Entry(
-        "name of the light", value=name, take=partial(_rename_light, session, name, is_new)
-    )
+
+    def rename(new: str) -> None:
+        session.edit(session.scene.with_light(name, name=new))
+        session.choose_light(new)
+
+    _ask(session, "light", name, rename, is_new)
 
 
 def name_view(session: Session, name: str, is_new: bool = False) -> None:
     """Ask for a name of a camera; with `is_new`, the name belongs to the step that saved the view."""
-    session.naming = Entry(
-        "name of the camera", value=name, take=partial(_rename_view, session, name, is_new)
-    )
+
+    def rename(new: str) -> None:
+        session.edit(session.scene.with_named_view(name, name=new))
+
+    _ask(session, "camera", name, rename, is_new)
 
 
 def name_variant(session: Session, name: str) -> None:
     """Ask for a name of a variant that was just kept."""
-    session.naming = Entry("name of the variant", value=name, take=partial(_rename_variant, session, name))
+
+    def rename(new: str) -> None:
+        session.studio.keep_variant(new)
+        session.studio.drop_variant(name)
+
+    _ask(session, "variant", name, rename)
 
 
-def _rename_light(session: Session, old: str, same_step: bool, text: str) -> None:
-    session.same_step = same_step
-    new = text.strip()
-    session.edit(session.scene.with_light(old, name=new))
-    session.choose_light(new)
-    session.tell(titled("light", new))
+def _ask(
+    session: Session, noun: str, name: str, rename: Callable[[str], object], same_step: bool = False
+) -> None:
+    def take(text: str) -> None:
+        session.same_step = same_step
+        rename(text.strip())
+        session.tell(titled(noun, text.strip()))
 
-
-def _rename_view(session: Session, old: str, same_step: bool, text: str) -> None:
-    session.same_step = same_step
-    new = text.strip()
-    session.edit(session.scene.with_named_view(old, name=new))
-    session.camera = new
-    session.tell(titled("camera", new))
-
-
-def _rename_variant(session: Session, old: str, text: str) -> None:
-    kept = session.studio.keep_variant(text.strip())
-    session.studio.drop_variant(old)
-    session.tell(f"kept as {kept}")
+    session.naming = Entry(f"name of the {noun}", value=name, take=take)

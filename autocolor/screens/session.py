@@ -15,11 +15,11 @@ from typing import Final, NamedTuple
 from autocolor.arrays import Words
 from autocolor.errors import InputError
 from autocolor.files.palette_file import Palette
+from autocolor.journal.autosave import Autosave
 from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.lights import Light
-from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Paint, Surface
+from autocolor.scene.surfaces import Surface
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
 from autocolor.screens.comparing import Comparing
@@ -34,6 +34,9 @@ PICTURE: Final = "picture"
 
 MIXING: Final = "mixing"
 """The name of the screen where colors are mixed, and taken from swatches and paints."""
+
+BLENDING: Final = "blending"
+"""The name of the screen where the two colors are blended over the picture; color mixing leads to it."""
 
 HISTORY: Final = "history"
 """The name of the screen with the steps of the session."""
@@ -109,7 +112,8 @@ class LastEdit(NamedTuple):
     """The number of further words for the same page: for menus, panels and the legend.
 
     If the edit did not change the words of the picture, and another screen turned to the picture, they also
-    include the picture.
+    include the picture. The words of edits on screens without the picture are sent when it is shown again:
+    then these edits are the last edit.
     """
 
 
@@ -170,8 +174,6 @@ class Session:
     """The line and the element of the pixel that is explained."""
     side_view: tuple[View, str] | None = None
     """The view from a named side that was taken last, and the name of the side."""
-    camera: str = ""
-    """The name of the named view that was taken last."""
 
     # The chosen things.
     surface: int = 0
@@ -182,10 +184,12 @@ class Session:
     """The name of the part that was pointed at last; empty at first."""
     before_solo: Solo | None = None
     """The light that was last switched on alone, and the switches before."""
-    blended: dict[str, tuple[Mesh, Paint]] = field(default_factory=dict)
-    """By the name of a surface that was given a ramp: the mesh then, and its paint before."""
+    own_colors: dict[str, str] = field(default_factory=dict)
+    """By the name of a surface: its object color before a key gave it another."""
 
     # Files.
+    autosave: Autosave | None = None
+    """The journal of the session in the state folder; None if nobody keeps it."""
     mesh_up: str = "z"
     mesh_scale: float = 1.0
     """The up axis and the scale of mesh files that are opened; other files give their own."""
@@ -257,12 +261,14 @@ class Session:
         """Show a message for some seconds; with `persistent`, until the next action.
 
         An empty message takes the last message away. Letters that cannot be printed, as in names of files,
-        are escaped. Users of another machine do not see the folders above `root`.
+        are escaped.
         """
-        if not self.is_at_hand:
-            message = message.replace(str(self.root), self.root.name or "/")
         now = time.monotonic()
-        self.news = Message(escaped(message), is_warning, now, persistent, offer=offer)
+        self.news = Message(escaped(self.shown(message)), is_warning, now, persistent, offer=offer)
+
+    def shown(self, text: object) -> str:
+        """A text with paths. Users of another machine do not see the folders above `root`."""
+        return str(text) if self.is_at_hand else str(text).replace(str(self.root), self.root.name or "/")
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first and the number of the others."""

@@ -83,7 +83,7 @@ LESSONS: Final = (
         "flaps",
         (
             "Keep a light from a part of the car: in the menu of views or lights,",
-            "switch on one of the flaps x, y and z, and set where it ends.",
+            "add one of the flaps x, y and z, and set where it ends.",
         ),
         edited("lights", cutting_flaps),
     ),
@@ -106,8 +106,8 @@ LESSONS: Final = (
     Lesson(
         "blend",
         (
-            "Pick blend at the top, and drag the handle of the bar: above the",
-            "handle, the body takes the color of the light.",
+            "In the menu of colors, pick light blending; drag the handle of the",
+            "bar: above it, the color of the body goes over into the light's.",
         ),
         edited("surfaces", lambda row: [row.paint.blend]),
     ),

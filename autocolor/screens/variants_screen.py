@@ -1,8 +1,4 @@
-"""The variants screen: small pictures; the user comes back to a variant, or compares with it.
-
-The screen shows no surface, so the small pictures borrow the words of all surfaces: every picture has an
-equal share of the words, for the colors that it needs most.
-"""
+"""The variants screen: small pictures; the user comes back to a variant, or compares with it."""
 
 from __future__ import annotations
 
@@ -10,70 +6,41 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
-import numpy as np
-
-from autocolor.arrays import Bytes
 from autocolor.errors import InputError
-from autocolor.images import display_image
-from autocolor.mapping.palette import thumbnail
-from autocolor.mapping.ranges import BACKGROUND, SCREENS
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 from autocolor.screens.comparing import BEFORE, NamedScene
+from autocolor.screens.gallery import (
+    ELEMENTS,
+    LINES,
+    NO_PICTURE,
+    TILE_ELEMENTS,
+    TILE_LINES,
+    Gallery,
+    Small,
+    Tile,
+    small_picture,
+)
 from autocolor.screens.naming import name_variant
 from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.steps import compare
-from autocolor.widgets.items import (
-    CHARACTER,
-    LIGHT_GRAY,
-    NIGHT,
-    SLATE,
-    WHITE,
-    YELLOW,
-    Area,
-    Item,
-    SmallPicture,
-    filled,
-    outline,
-    text,
-)
+from autocolor.widgets.items import LIGHT_GRAY, Area, text
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import (
-    ROW_LINES,
-    TEXT_DOWN,
-    Button,
-    Entry,
-    Gap,
-    Pair,
-    Place,
-    Widget,
-    page_choice,
-    short_name,
-)
-
-LINES: Final = 84
-ELEMENTS: Final = 112
-"""The size of a small picture."""
+from autocolor.widgets.widget import ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Pair, Widget, page_choice
 
 ACROSS: Final = 4
 DOWN: Final = 4
 ON_PAGE: Final = ACROSS * DOWN
 STEP_ACROSS: Final = 124
 STEP_DOWN: Final = 111
-FRAME: Final = 4
-NAME_LINES: Final = 14
 
 PLACES: Final = tuple(
-    Area(left, top, left + ELEMENTS + 2 * FRAME - 1, top + LINES + 2 * FRAME - 1 + NAME_LINES)
+    Area(left, top, left + TILE_ELEMENTS - 1, top + TILE_LINES - 1)
     for top in range(WORK.top + 4, WORK.top + 4 + DOWN * STEP_DOWN, STEP_DOWN)
     for left in range(8, 8 + ACROSS * STEP_ACROSS, STEP_ACROSS)
 )
-"""Where the small pictures stand, with their frames and names."""
-
-MOST_COLORS: Final = 200
-"""Assumed: the most colors of a small picture; more are not seen at this size."""
-
+"""The places of the tiles."""
 
 EMPTY: Final = ("no variant is kept yet", "keep the scene as it is now, and come back to it later")
 """The lines of the screen before a variant is kept."""
@@ -94,7 +61,7 @@ class VariantsScreen(Screen):
         self._page = 0
         self._last: Rendering | None = None
         """The rendering of the last small picture; the next rendering reuses what did not change."""
-        self._small: dict[Scene, SmallPicture] = {}
+        self._gallery = Gallery[Scene]()
 
     # The small pictures.
 
@@ -113,73 +80,42 @@ class VariantsScreen(Screen):
         """The scenes of this page."""
         return [self.session.studio.variants[name].scene for name in self._names()]
 
-    def _share(self) -> int:
-        """How many colors a small picture of this page may have."""
-        return min(MOST_COLORS, (SCREENS.first - BACKGROUND - 1) // max(1, len(self._names())))
-
-    def _shown(self) -> list[tuple[Area, int, SmallPicture]]:
-        """The computed small pictures of this page, with their areas and the first of their words."""
-        share = self._share()
-        shown = []
-        for number, (scene, area) in enumerate(zip(self._scenes(), PLACES, strict=False)):
-            small = self._small.get(scene)
-            if small is not None and small.most == share:
-                shown.append((area, BACKGROUND + 1 + number * share, small))
-        return shown
-
     def build(self, around: Surroundings) -> Content:
-        shown = self._shown()
+        scenes = self._scenes()
+        wanted = {scene: partial(self._small_picture, scene) for scene in scenes}
+        lines = () if scenes else EMPTY
         return Content(
-            items=[small.item(first, area.left + FRAME, area.top + FRAME) for area, first, small in shown]
-            if self.session.studio.variants
-            else [
+            items=[
                 text(line, 16, WORK.top + ROW_LINES * number + TEXT_DOWN, LIGHT_GRAY)
-                for number, line in enumerate(EMPTY)
+                for number, line in enumerate(lines)
             ],
-            loads=[(first, small.colors) for _, first, small in shown],
+            loads=self._gallery.loads,
             rows=self._rows,
-            widgets=self._buttons(),
-            idle=self._idle,
+            widgets=[
+                self._gallery.framed(scene, self._tile(name).at(area))
+                for name, scene, area in zip(self._names(), scenes, PLACES, strict=False)
+            ],
+            idle=partial(self._gallery.advance, wanted),
         )
 
-    def _buttons(self) -> Sequence[Widget]:
-        return [
-            VariantButton(
-                name,
-                f"Variant {name}: a click chooses it",
-                run=partial(self._choose, name),
-                is_chosen=name == self._present,
-            ).at(area)
-            for name, area in zip(self._names(), PLACES, strict=False)
-        ]
+    def _tile(self, name: str) -> Tile:
+        help, run = f"Variant {name}: a click chooses it", partial(self._choose, name)
+        return Tile(name, help, run=run, is_chosen=name == self._present)
 
-    def _idle(self) -> bool:
-        """Compute the next missing small picture."""
-        share = self._share()
-        for scene in self._scenes():
-            small = self._small.get(scene)
-            if small is None or small.most != share:
-                colors = self._colors_of(scene) if small is None else small.full
-                self._small[scene] = SmallPicture(colors, share)
-                return True
-        return False
-
-    def _colors_of(self, scene: Scene) -> Bytes:
-        """The colors of a small picture, (84, 112, 3); black if the scene is refused at this size."""
+    def _small_picture(self, scene: Scene) -> Small:
         try:
             self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
-            return thumbnail(display_image(scene, self._last.picture), LINES, ELEMENTS)
+            return Small(small_picture(scene, self._last.picture))
         except InputError:
             # At this size a surface that the whole picture hides may be visible, and too bright.
-            return np.zeros((LINES, ELEMENTS, 3), np.uint8)
+            return NO_PICTURE
 
     def enter(self) -> None:
         if self._present:
             self._choose(self._present)
 
     def leave(self) -> None:
-        scenes = {variant.scene for variant in self.session.studio.variants.values()}
-        self._small = {scene: small for scene, small in self._small.items() if scene in scenes}
+        self._gallery.keep({variant.scene for variant in self.session.studio.variants.values()})
         self._last = None
 
     # The menu.
@@ -255,21 +191,3 @@ class VariantsScreen(Screen):
         self.session.studio.drop_variant(name)
         self.session.comparing.forget(variant.scene)
         self.session.tell(f"variant {name} dropped")
-
-
-class VariantButton(Button):
-    """The frame of a small picture with its name below."""
-
-    def items(self, lit: bool) -> list[Item]:
-        word = YELLOW if self.is_chosen else LIGHT_GRAY if lit else SLATE
-        area = self.area
-        top = area.bottom - 12
-        name = short_name(self.label, (area.width - 8) // CHARACTER)
-        return [
-            outline(area._replace(bottom=area.top + LINES + 2 * FRAME - 1), word),
-            filled(Area(area.left, top, area.right, area.bottom), NIGHT),
-            text(name, area.left + FRAME, top + 2, YELLOW if self.is_chosen else WHITE),
-        ]
-
-    def pick(self, place: Place) -> object:
-        return self.run()

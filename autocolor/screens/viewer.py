@@ -24,10 +24,9 @@ from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_actions import (
     FileOnDisk,
     bring_paints,
-    lying,
     open_file,
+    remark,
     save_screenshot,
-    take_changes,
 )
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
@@ -38,7 +37,6 @@ from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
 from autocolor.screens.picture.explain_screen import ExplainScreen
 from autocolor.screens.picture.history_screen import HistoryScreen
-from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.picture.split_screen import SplitScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
@@ -51,7 +49,7 @@ from autocolor.screens.surface.mixing_screen import MixingScreen
 from autocolor.screens.surface.reflectance_screen import ReflectanceScreen
 from autocolor.screens.variants_screen import VariantsScreen
 from autocolor.studio import Studio
-from autocolor.widgets.sheet import Sent, Sheet
+from autocolor.widgets.sheet import Page, Sent, Sheet
 from ramtek_emu import HostPort, RamtekError
 
 
@@ -61,7 +59,6 @@ class Viewer:
     studio: Studio
     session: Session
     board: Board
-    edits: PictureEdits
 
     def __init__(self, scene: Scene | History, display: HostPort, folder: Path | None = None) -> None:
         self.display = display
@@ -74,19 +71,18 @@ class Viewer:
         self.session = Session(self.studio, self.display, self.folder)
         self.screens = {each.name: each(self.session) for each in SCREENS}
         self.board = Board(self.session, self.screens)
-        self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
         self.session.keys = rows_of_help()
-        self._disk = FileOnDisk(self.studio)
+        self._disk = FileOnDisk(self.session)
         self._action = Action(self.session)
         self._drags = 0
         """How many drags and picks there were."""
         self._had_news = True
-        self._base: Words | int | None = None
-        """The base of the page that was shown last."""
         self._words: Words | None = None
-        """The words of the studio's picture when that page was shown."""
-        hints = "F1: help", "Tab or the right edge: the menu", lying(self.session)
+        """The words of the studio's picture on the last page."""
+        self._pictured: tuple[Scene, Words | None] = self.studio.scene, None
+        """The scene and the words of the last page whose base was the picture."""
+        hints = "F1: help", "Tab or the right edge: the menu", remark(self.session)
         self.session.tell("; ".join(filter(None, hints)), persistent=True)
         self._update()
         self._unit.show()
@@ -244,7 +240,7 @@ class Viewer:
 
     def _take_changes(self) -> None:
         """Show the changes that another program made to the scene's file."""
-        if self._disk.was_changed() and self._reopen_by(lambda: take_changes(self.session, self._disk)):
+        if self._disk.was_changed() and self._reopen_by(self._disk.take):
             self._update()
 
     def _reopen_by(self, run: Callable[[], object]) -> bool:
@@ -283,22 +279,25 @@ class Viewer:
         self._had_news = self.session.has_news
         self.board.forget()
         page = self.board.page()
-        self._note(self._sheet.show(page), has_turned)
-        if page.base is not self._base and not self.board.is_dragging:
-            # The hint for the pointer reads a word back from the display, which has the new base only now.
-            self._sheet.show(self.board.page())
-        self._base = page.base
+        self._note(page, self._sheet.show(page), has_turned)
         self._unit.mark(self.board.mark)
 
-    def _note(self, sent: Sent, has_turned: bool) -> None:
-        """Note the words of a page that shows an edit, or the refined picture of the last edit."""
+    def _note(self, page: Page, sent: Sent, has_turned: bool) -> None:
+        """Note the words of a page that shows an edit, or the picture of edits for the first time."""
         scene, words, last = self.studio.scene, self.studio.words, self.session.last_edit
+        (pictured, pictured_words), is_picture = self._pictured, page.base is self.studio.words
         is_edited = last is None or scene is not last.after
-        has_other_words = words is not self._words
+        is_refined = words is not self._words and not has_turned
+        is_sent = is_picture and words is not pictured_words
         self._words = words
-        if is_edited or (has_other_words and not has_turned):
+        if is_picture:
+            self._pictured = scene, words
+        if is_edited or is_refined or is_sent:
             before = scene if last is None else last.after if is_edited else last.before
-            count = sent.entry_words + (sent.base_words if has_other_words else 0)
+            if is_sent and not is_edited and pictured is not scene:
+                # The edits on screens without the picture are shown together.
+                before = pictured
+            count = sent.entry_words + (sent.base_words if is_sent else 0)
             self.session.last_edit = LastEdit(before, scene, sent.words[:count], len(sent.words) - count)
 
     def _refine(self) -> None:
@@ -401,11 +400,11 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     MappingScreen,
     ScalarScreen,
     VariantsScreen,
+    EntriesScreen,
+    FileScreen,
     HistoryScreen,
     ExplainScreen,
-    FileScreen,
     SplitScreen,
-    EntriesScreen,
     SentScreen,
     HelpScreen,
 )

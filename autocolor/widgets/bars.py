@@ -104,40 +104,41 @@ class Bar(Widget):
             return 0.0
         return min(1.0, max(0.0, (self.value - self.low) / (self.high - self.low)))
 
+    @property
+    def _end(self) -> int:
+        """The element of the track at the value."""
+        return self._track.left + round(self.share * (self._track.width - 1))
+
     def items(self, lit: bool) -> list[Item]:
         return self._row_items(lit) if self.area.height == self.row_lines else self._wide_items(lit)
 
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
+        # The box stands at the right of the number.
         value = self.number + ("" if self.flip is None else BESIDE_BOX)
         items = self.row(lit, self.label, value)
         if self.flip is not None:
             items += box_items(self._box, self.value is not None, self.ink, background)
-        track = self._track
-        items.append(filled(track, GRAY if lit else SLATE))
-        if self.value is not None and not self.why_not:
-            end = track.left + round(self.share * (track.width - 1))
-            items.append(filled(track._replace(right=end), YELLOW if lit else self.word))
+        if self.value is not None:
+            track = self._track
+            items.append(filled(track, GRAY if lit else SLATE))
+            if not self.why_not:
+                items.append(filled(track._replace(right=self._end), YELLOW if lit else self.word))
         return items
 
     def _wide_items(self, lit: bool) -> list[Item]:
-        left, top, right, bottom = self.area
-        track = self._track
-        end = track.left + round(self.share * (track.width - 1))
+        left, top, _, bottom = self.area
+        track, end = self._track, self._end
         middle = (top + bottom) // 2 - 4
-        label = fitted(self.label, (track.left - left - MARGIN) // CHARACTER)
-        number = fitted(f"{self.number} {self.unit}".rstrip(), (right - track.right - MARGIN) // CHARACTER)
-        items = [
+        number = fitted(f"{self.number} {self.unit}".rstrip(), WIDE_NUMBER)
+        return [
             filled(self.area, NIGHT),
             filled(track, SLATE),
             filled(track._replace(right=end), YELLOW if lit else self.word),
             filled(Area(end, track.top - 2, end, track.bottom + 2), WHITE),
+            text(fitted(self.label, WIDE_LABEL), left + MARGIN, middle, self.ink),
+            *([text(number, track.right + MARGIN, middle, self.ink)] if number else ()),
         ]
-        if label:
-            items.append(text(label, left + MARGIN, middle, self.ink))
-        if number:
-            items.append(text(number, track.right + MARGIN, middle, self.ink))
-        return items
 
     @property
     def _box(self) -> Area:
@@ -151,13 +152,17 @@ class Bar(Widget):
         left, top, right, bottom = self.area
         if self.area.height == self.row_lines:
             return Area(left + MARGIN, bottom - THIN, right - MARGIN, bottom - 1)
-        beside = CHARACTER * WIDE_LABEL + MARGIN if self.area.width > 3 * CHARACTER * WIDE_LABEL else MARGIN
-        return Area(left + beside, top + 4, right - CHARACTER * WIDE_NUMBER - MARGIN, bottom - 4)
+        return Area(
+            left + CHARACTER * WIDE_LABEL + MARGIN,
+            top + 4,
+            right - CHARACTER * WIDE_NUMBER - MARGIN,
+            bottom - 4,
+        )
 
     def value_at(self, element: int) -> float:
         """The value at an element, rounded to the step; beyond the bar, an end of the usual range."""
         track = self._track
-        share = (element - track.left) / max(1, track.width - 1)
+        share = (element - track.left) / (track.width - 1)
         if not 0 < share < 1:
             return self.low if share <= 0 else self.high
         value = rounded_to(self.low + share * (self.high - self.low), self.step)
@@ -207,8 +212,6 @@ def rounded_to(value: float, step: float) -> float:
     >>> rounded_to(0.30000000000000004, 0.1), rounded_to(17.2, 5)
     (0.3, 15.0)
     """
-    if step <= 0:
-        return value
     digits = max(0, 2 - math.floor(math.log10(step)))
     return float(round(math.floor(value / step + 0.5) * step, digits))
 
@@ -225,21 +228,11 @@ def number_text(value: float, step: float) -> str:
     value += 0.0
     if abs(value) >= 1e6 or not math.isfinite(value):
         return f"{value:g}"
-    digits = digits_of(step)
-    text = f"{value:.{digits + 1}f}"
+    # One digit more than the step has behind its point, of at most nine.
+    text = f"{value:.{len(f'{step:.9f}'.rstrip('0').partition('.')[2]) + 1}f}"
     if value and not float(text):
         return f"{value:.2g}"
     return text[:-1].removesuffix(".") if text.endswith("0") else text
-
-
-def digits_of(step: float) -> int:
-    """The digits behind the point of a step, at most nine.
-
-    >>> digits_of(5.0), digits_of(0.25), digits_of(0.1)
-    (0, 2, 1)
-    """
-    digits = f"{step:.9f}".rstrip("0")
-    return len(digits) - digits.index(".") - 1
 
 
 # Component bars: red, green, blue and white of a color, one element for each value of the component. Hue,
@@ -276,8 +269,7 @@ class ComponentBar(Bar):
         return Area(left + LETTER, top + UP_DOWN, left + LETTER + STEPS - 1, bottom - UP_DOWN)
 
     def items(self, lit: bool) -> list[Item]:
-        track = self._track
-        end = track.left + round(self.share * (track.width - 1))
+        track, end = self._track, self._end
         middle = (self.area.top + self.area.bottom + 1 - CHARACTER_LINES) // 2
         # The bar keeps its color when it is lit, which distinguishes it from the other bars.
         number, ink = fitted(self.number, 5), YELLOW if lit else WHITE
@@ -319,14 +311,16 @@ LANE: Final = 8
 
 @dataclass(frozen=True)
 class LevelBar(Widget):
-    """The levels of a surface, from the left or, of an upright bar, from below; a pick or a drag selects one.
+    """The levels of a surface, and a handle at `value`, 0 to `most`, which a pick or a drag puts elsewhere.
 
-    `words` has the word that shows each level. The area holds the levels and the lanes of the handle: above
-    and below, or at the left of an upright bar. The number stands beyond that lane; it is part of the handle.
+    `words` has the word that shows each level, from the left or, in an upright bar, from below. The area
+    holds the levels and the lanes of the handle: above and below, or at the left of an upright bar. The
+    number stands beyond that lane; it is part of the handle.
     """
 
     words: Words = field(default_factory=lambda: np.zeros(2, np.uint16))
-    level: int = 0
+    value: float = 0
+    most: int = 1
     put: Callable[[int], object] = lambda _: None
     number: str = ""
     upright: bool = False
@@ -345,125 +339,80 @@ class LevelBar(Widget):
     @property
     def _number_area(self) -> Area:
         """The area of the number, at the left of an upright bar."""
-        line = self.strip.bottom - self._along
-        return Area(
-            self.area.left - CHARACTER * len(self.number),
-            line - REACH,
-            self.area.left - 1,
-            line - REACH + CHARACTER_LINES - 1,
-        )
+        left, top = self.area.left, self.strip.bottom - self._along(self.value) - REACH
+        return Area(left - CHARACTER * len(self.number), top, left - 1, top + CHARACTER_LINES - 1)
 
     @property
-    def _along(self) -> int:
-        """The elements or lines from the lowest level to the handle."""
-        return half_up(self.level * (self._length - 1) / (len(self.words) - 1))
+    def _last(self) -> int:
+        """The elements or lines from the lowest value to the highest."""
+        return (self.strip.height if self.upright else self.strip.width) - 1
 
-    def level_at(self, place: Place) -> int:
-        """The level at a place; beyond the ends of the bar, the lowest or the highest level."""
-        levels = levels_along(self._length, len(self.words))
+    def _along(self, value: float) -> int:
+        """The elements or lines from the lowest value to another."""
+        return half_up(value * self._last / self.most)
+
+    def value_at(self, place: Place) -> int:
+        """The value at a place; beyond the ends of the bar, the lowest or the highest."""
         along = self.strip.bottom - place.line if self.upright else place.element - self.strip.left
-        return int(levels[min(max(along, 0), self._length - 1)])
-
-    @property
-    def _length(self) -> int:
-        return self.strip.height if self.upright else self.strip.width
+        return half_up(min(max(along, 0), self._last) * self.most / self._last)
 
     def items(self, lit: bool) -> list[Item]:
-        strip, ink = self.strip, YELLOW if lit else WHITE
-        along = self._along
+        strip, ink, along = self.strip, YELLOW if lit else WHITE, self._along(self.value)
         # The frame is seen beside dark levels, over a dark picture.
         items = [filled(strip.inset(-1), GRAY), level_strip(self.words.tobytes(), strip, self.upright)]
         if not self.upright:
             element = strip.left + along
             down, up = pointer(element, strip.top - 2, DOWN, ink), pointer(element, strip.bottom + 2, UP, ink)
             return [*items, down, up]
-        line = strip.bottom - along
-        items.append(pointer(strip.left - 2, line, RIGHT, ink))
-        if self.number:
-            items.append(text(self.number, *self._number_area[:2], ink, NIGHT))
-        return items
+        items.append(pointer(strip.left - 2, strip.bottom - along, RIGHT, ink))
+        return [*items, *([text(self.number, *self._number_area[:2], ink, NIGHT)] if self.number else ())]
 
     def pick(self, place: Place) -> object:
-        return self.put(self.level_at(place))
+        return self.put(self.value_at(place))
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
-        return self.put(self.level_at(place))
+        return self.put(self.value_at(place))
 
     def nudge(self, steps: float) -> object:
-        return self.put(min(max(self.level + half_up(steps), 0), len(self.words) - 1))
+        return self.put(min(max(half_up(self.value + steps), 0), self.most))
 
 
 @dataclass(frozen=True)
 class RampBar(LevelBar):
     """The levels of a surface with a ramp, with a pointer at each color of the ramp if there is room.
 
-    The handle is at the chosen color; `color` is its number, from 0. A pick or a drag chooses the nearest
-    color, a key a neighbor.
+    The handle is at the chosen color. A pick or a key chooses another; a drag moves the color where it began:
+    `move` is called with its new place among the colors.
     """
 
-    colors: int = 2
-    color: int = 0
-    choose: Callable[[int], object] = lambda _: None
-
-    @property
-    def _along(self) -> int:
-        return self._along_to(self.color)
-
-    def _along_to(self, color: int) -> int:
-        """The elements from the lowest level to a color."""
-        return half_up(color * (self.strip.width - 1) / (self.colors - 1))
+    move: Callable[[int], object] = lambda _: None
 
     def items(self, lit: bool) -> list[Item]:
-        strip, others = self.strip, []
-        if self.colors <= strip.width // (2 * REACH + 1):
-            elements = [strip.left + self._along_to(color) for color in range(self.colors)]
-            others = [pointer(element, strip.top - 2, DOWN, GRAY) for element in elements]
-        return [*others, *super().items(lit)]
-
-    def color_at(self, place: Place) -> int:
-        """The number of the color that is nearest to a place."""
-        along = min(max(place.element - self.strip.left, 0), self.strip.width - 1)
-        return half_up(along * (self.colors - 1) / (self.strip.width - 1))
-
-    def pick(self, place: Place) -> object:
-        return self.choose(self.color_at(place))
+        strip, colors = self.strip, range(self.most + 1)
+        has_room = len(colors) <= strip.width // (2 * REACH + 1)
+        elements = [strip.left + self._along(color) for color in colors] if has_room else []
+        stops = [pointer(element, strip.top - 2, DOWN, LIGHT_GRAY) for element in elements]
+        return [*stops, *super().items(lit)]
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
-        return self.choose(self.color_at(place))
-
-    def nudge(self, steps: float) -> object:
-        return self.choose(min(max(self.color + (1 if steps > 0 else -1), 0), self.colors - 1))
+        if last == start:
+            self.put(self.value_at(start))
+        return self.move(self.value_at(place))
 
 
 @dataclass(frozen=True)
-class PercentBar(Widget):
+class PercentBar(LevelBar):
     """A handle at a percentage of the height of the area, with its number, beside an upright level bar."""
 
-    value: float = 100.0
-    put: Callable[[float], object] = lambda _: None
+    most: int = 100
+    upright: bool = True
 
     def items(self, lit: bool) -> list[Item]:
-        ink = YELLOW if lit else WHITE
-        line = self.area.bottom - half_up(self.value / 100 * (self.area.height - 1))
-        number = f"{self.value:.0f}%"
+        ink, line = YELLOW if lit else WHITE, self.strip.bottom - self._along(self.value)
         return [
             pointer(self.area.left + 2, line, LEFT, ink),
-            text(number, self.area.left + LANE, line - REACH, ink, NIGHT),
+            text(f"{self.value:.0f}%", self.area.left + LANE, line - REACH, ink, NIGHT),
         ]
-
-    def percent_at(self, place: Place) -> float:
-        """The whole percentage at a place."""
-        share = (self.area.bottom - place.line) / (self.area.height - 1)
-        return float(half_up(100 * min(max(share, 0.0), 1.0)))
-
-    def pick(self, place: Place) -> object:
-        return self.put(self.percent_at(place))
-
-    def drag(self, start: Place, last: Place, place: Place) -> object:
-        return self.put(self.percent_at(place))
-
-    def nudge(self, steps: float) -> object:
-        return self.put(min(max(float(half_up(self.value + steps)), 0.0), 100.0))
 
 
 def levels_along(length: int, levels: int) -> Numbers:

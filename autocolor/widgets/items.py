@@ -12,9 +12,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Floats, Numbers, Words
+from autocolor.arrays import Booleans, Floats, Numbers, Words
 from autocolor.checks import printable
-from autocolor.mapping.palette import in_palette
 from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import instructions
 
@@ -27,9 +26,9 @@ from ramtek_emu import instructions
 # color mixing                  SCREENS; the chosen surface's in a picture       shades, hues, swatches, and
 #                               and a bar                                        grays of the other surfaces
 # light blending                all; the chosen surface's again in a bar         none
-# variants, file                SCREENS                                          small pictures, in the words
-#                                                                                of all surfaces
 # entries                       all, each in its cell                            none
+# variants, file                SCREENS                                          the palette of a gallery, in
+#                                                                                the words of all surfaces
 # sent, help                    SCREENS                                          none
 #
 # A screen borrows entries by `Content.loads` alone. A sheet loads the entries that differ from the page
@@ -274,23 +273,6 @@ def _triangle() -> Booleans:
 
 _RIGHT: Final = _triangle()
 _POINTERS: Final = (_RIGHT, _RIGHT.T, _RIGHT[:, ::-1], _RIGHT.T[::-1])
-
-
-class SmallPicture:
-    """A picture in borrowed entries: in at most `most` colors of `full`, (lines, elements, 3)."""
-
-    def __init__(self, full: Bytes, most: int) -> None:
-        self.full = full
-        self.most = most
-        self._places, self.colors = in_palette(full, most)
-        self._item: tuple[tuple[int, int, int], Item] | None = None
-
-    def item(self, first: int, left: int, top: int) -> Item:
-        """The picture with its upper left corner at (left, top), with words from a first word on."""
-        if self._item is None or self._item[0] != (first, left, top):
-            words = (self._places + np.uint16(first)).astype(np.uint16)
-            self._item = (first, left, top), image(words, left, top)
-        return self._item[1]
 
 
 def area_of(points: Floats, margin: int = 0, limit: Area = SCREEN) -> Area:

@@ -64,12 +64,12 @@ def lines_of(rows: Sequence[Widget]) -> int:
     return sum([row.row_lines for row in rows])
 
 
-def laid_out(rows: Sequence[Widget]) -> list[Widget]:
-    """The rows of the menu with their areas, from the top."""
-    placed, top = [], MENU.top
+def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
+    """The rows of the menu, or of another column, with their areas, from the top."""
+    placed, top = [], area.top
     for row in rows:
         end = top + row.row_lines
-        placed.append(row.at(Area(MENU.left + 1, top, MENU.right, end - 1)))
+        placed.append(row.at(Area(area.left + 1, top, area.right, end - 1)))
         top = end
     return placed
 

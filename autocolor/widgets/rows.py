@@ -2,15 +2,15 @@
 
 So a new column of a table appears on the screens by itself. A number is a bar, a switch a box, a vector three
 bars; a choice and a text are rows of their own. The name of a nested row stands before the names of its
-columns. A list of names has a switch for the whole list, and a box for each name of a table; many names come
-in pages, so that they do not fill the menu.
+columns; all nested rows that are absent share a row, which adds them. A list of names has a switch for the
+whole list, and a box for each name of a table; many names come in pages, so that they do not fill the menu.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Final, NamedTuple
 
@@ -28,23 +28,30 @@ from autocolor.scene.kinds import (
     Whole,
     in_digits,
 )
-from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References
 from autocolor.widgets.bars import Bar, bar_within, rounded_to
-from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
+from autocolor.widgets.items import CHARACTER, Item
+from autocolor.widgets.widget import (
+    MARGIN,
+    Choice,
+    Entry,
+    Heading,
+    Place,
+    Switch,
+    Widget,
+    page_choice,
+)
 
 Put = Callable[[Mapping[str, object]], object]
 """Changes fields of the row, by name."""
 
+PutValue = Callable[[object], object]
+"""Changes one field of the row."""
+
 AXES: Final = "xyz"
 
-TakeNames = Callable[[Any], object]
-"""Takes a name, names, or None."""
-
-NAMES_A_PAGE: Final = 12
-"""Assumed: names that are shown at once; two lists of so many fit in a menu."""
-
-LONGEST_LABEL: Final = 14
-"""Characters of a label beside a box."""
+NAMES_A_PAGE: Final = 7
+"""Assumed: names that are shown at once; a list of so many fits in the menu of a light."""
 
 INDENT: Final = "  "
 
@@ -86,19 +93,44 @@ class World(NamedTuple):
     def end_beyond(self, axis: str, sign: float, margin: float) -> float:
         """A coordinate beyond which nothing is: below everything, or with a positive sign above it.
 
-        It is at least `margin` and less than two steps of the axis's bar away.
+        It is at least `margin` away, and less than two steps of the axis's bar farther.
         """
-        low, high = self.everything or (self.low, self.high)
-        step = self.range_of(axis).step
-        number = AXES.index(axis)
-        farthest = high[number] if sign > 0 else -low[number]
-        end = rounded_to((math.floor((farthest + margin) / step) + 1) * step, step)
-        return end if sign > 0 else -end
+        corners, step = self.everything or (self.low, self.high), self.range_of(axis).step
+        farthest = corners[sign > 0][AXES.index(axis)]
+        return rounded_to(farthest + math.copysign(margin + step, sign), step)
 
     def range_of_lengths(self, is_zero_left_out: bool) -> BarRange:
         """The usual range of a length: up to the whole size of the object."""
         usual = bar_within(0, self.size)
         return usual._replace(low=usual.step) if is_zero_left_out else usual
+
+
+@dataclass(frozen=True)
+class AddRow(Widget):
+    """A row with the names of absent things, each with its help; a pick on a name adds the thing."""
+
+    names: Mapping[str, str] = field(default_factory=dict)
+    add: Callable[[str], object] = lambda _: None
+
+    @property
+    def _value(self) -> str:
+        return " ".join(f"+{name}" for name in self.names)
+
+    def items(self, lit: bool) -> list[Item]:
+        return self.row(lit, self.label, self._value)
+
+    def _name_at(self, place: Place) -> str:
+        """The name at a place; at the left of all names, the first."""
+        start = self.area.right + 1 - MARGIN - CHARACTER * len(self._value)
+        before = max(0, (place.element - start) // CHARACTER)
+        return list(self.names)[self._value[:before].count(" ")]
+
+    def hint_at(self, place: Place) -> str:
+        name = self._name_at(place)
+        return f"Add {self.label} {name}. {self.names[name]}"
+
+    def pick(self, place: Place) -> object:
+        return self.add(self._name_at(place))
 
 
 class _Menu(NamedTuple):
@@ -129,15 +161,24 @@ def _rows_in(
     menu: _Menu, row: Row, leave_out: Sequence[str] = (), columns: Sequence[str] | None = None
 ) -> Iterator[Widget]:
     fields = fields_of(type(row))
+    absent = {}
     for name in fields if columns is None else columns:
-        if name not in leave_out:
-            yield from _rows_of_field(menu, name, fields[name], vars(row)[name])
+        if name in leave_out:
+            continue
+        column, value = fields[name], vars(row)[name]
+        if isinstance(column.kind, Nested) and value is None:
+            absent[name] = column.help
+        else:
+            yield from _rows_of_field(menu, name, column, value)
+    if absent:
+        add = partial(_put_value, menu.put, value={})
+        yield AddRow(menu.label.strip(), names=absent, add=add)
 
 
 def _rows_of_field(menu: _Menu, name: str, column: Column, value: Any) -> Iterator[Widget]:
     kind, help = column.kind, column.help
     shown = f"{menu.label}{name}".replace("_", " ")
-    put = partial(_put, menu.put, name)
+    put = partial(_put_value, menu.put, name)
     if isinstance(kind, (Number, Whole)):
         yield _bar(menu, shown, name, column, value)
     elif isinstance(kind, Boolean):
@@ -149,163 +190,52 @@ def _rows_of_field(menu: _Menu, name: str, column: Column, value: Any) -> Iterat
     elif isinstance(kind, ColorKind):
         yield Entry(shown, help, value=in_digits(value), take=put)
     elif isinstance(kind, VectorKind) and value is not None:
-        yield from _vector_rows(menu, shown, name, column, value)
+        yield from _vector_rows(menu, shown, column, value, put)
     elif isinstance(kind, AngleCurveKind):
-        yield from _curve_rows(menu, shown, name, kind, help, value)
-    elif isinstance(kind, Referring):
-        yield from reference_rows(shown, column, kind, value, put, menu.world.names)
+        yield from _curve_rows(shown, kind, help, value, put)
+    elif isinstance(kind, Reference):
+        none = (NONE,) if column.is_optional else ()
+        names = dict.fromkeys((*none, *kind.words, *menu.world.names.of(kind.table)))
+        yield Choice(
+            shown,
+            help,
+            names=tuple(names),
+            present=NONE if value is None else value,
+            choose=lambda name: put(None if name in none else name),
+        )
+    elif isinstance(kind, References):
+        yield from _list_rows(shown, column, kind.table, value, put, menu.world.names)
     elif isinstance(kind, OneRowOf):
         yield Choice(shown, help, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested) and kind.inline:
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested):
-        axis, edge = name if name in AXES else "", vars(value).get("edge_width", 0.0) if value else 0.0
+        axis, edge = name if name in AXES else "", vars(value).get("edge_width", 0.0)
         # The menu is narrow: put only the row's own name before the names of its fields.
-        inside = _Menu(put, menu.world, f"{name} ", axis, edge)
-        yield from _rows_of_row(inside, shown, help, value)
+        yield from _rows_of_row(_Menu(put, menu.world, f"{name} ", axis, edge), shown, help, value)
     elif isinstance(kind, NamedRows):
         if value:
             yield Heading(shown)
         for row in value:
-            inside = _Menu(partial(_put, put, row.name), menu.world, INDENT)
+            inside = _Menu(partial(_put_value, put, row.name), menu.world, INDENT)
             for each in _rows_of_row(inside, row.name, help, row, ("name",)):
                 # Other named rows have the same labels.
                 yield replace(each, within=f"{name}.{row.name}", help=f"{row.name}: {each.help}")
 
 
 def _rows_of_row(
-    menu: _Menu, label: str, help: str, row: Row | None, leave_out: Sequence[str] = ()
+    menu: _Menu, label: str, help: str, row: Row, leave_out: Sequence[str] = ()
 ) -> Iterator[Widget]:
-    """The rows of a nested row, after its own switch if it has one. An absent row is a switch alone."""
-    if row is None:
-        yield Switch(label, help, is_on=False, flip=partial(menu.put, {}))
-        return
+    """The rows of a nested row, after its own switch if it has one."""
     if "on" in fields_of(type(row)):
         is_on = vars(row)["on"]
-        yield Switch(label, help, is_on=is_on, flip=partial(_put, menu.put, "on", not is_on))
+        yield Switch(label, help, is_on=is_on, flip=partial(_put_value, menu.put, "on", not is_on))
     yield from _rows_in(menu, row, (*leave_out, "on"))
 
 
-def _bar(menu: _Menu, label: str, name: str, column: Column, value: float | None) -> Bar:
-    """The bar of a number. A box switches a number that may be absent, or without a limit."""
-    put, axis = menu.put, menu.axis
-    kind = column.kind
-    usual = column.bar or BarRange(0, 1, 0.01)
-    if column.unit == WORLD_UNITS and isinstance(kind, Number) and kind.at_least == 0:
-        usual = menu.world.range_of_lengths(is_zero_left_out=kind.above)
-    elif column.unit == WORLD_UNITS:
-        usual = menu.world.range_of(axis)
-    endless = kind.endless if isinstance(kind, Number) else None
-    flip: Callable[[], object] | None = None
-    present = value
-    if endless is not None:
-        limit = menu.world.end_beyond(axis, endless, menu.edge) if axis else 0.0
-        present = None if value == endless else value
-        flip = partial(_put, put, name, limit if present is None else endless)
-    elif column.is_optional:
-        start = usual.low if column.start is None else column.start
-        start = int(start) if isinstance(kind, Whole) else start
-        flip = partial(_put, put, name, start if value is None else None)
-    return Bar(
-        label,
-        _help(column),
-        value=present,
-        **usual._asdict(),
-        unit=column.unit if len(column.unit) < 8 else "",
-        put=partial(_put_number, put, name, isinstance(kind, Whole)),
-        flip=flip,
-    )
-
-
-def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vector) -> Iterator[Widget]:
-    for number, axis in enumerate(AXES):
-        is_place = column.unit == WORLD_UNITS
-        usual = menu.world.range_of(axis) if is_place else BarRange(-1, 1, 0.01)
-        yield Bar(
-            f"{label} {axis}",
-            _help(column),
-            value=value[number],
-            **usual._asdict(),
-            put=partial(_put_component, menu.put, name, value, number),
-        )
-
-
-def _curve_rows(
-    menu: _Menu, label: str, name: str, kind: AngleCurveKind, help: str, curve: AngleCurve | None
-) -> Iterator[Widget]:
-    """A switch for a curve over angles, and a bar for the share at each of its points."""
-    begun = kind.start if curve is None else None
-    yield Switch(label, help, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
-    curve = curve or ()
-    for number, (angle, share) in enumerate(curve):
-        usual = bar_within(0 if number else kind.least, 1)
-        yield Bar(
-            f"at {angle:g} degrees",
-            help,
-            value=share,
-            **usual._asdict(),
-            put=partial(_put_share, menu.put, name, curve, number),
-        )
-
-
-def reference_rows(
-    label: str, column: Column, kind: Referring[Any], value: Any, take: TakeNames, tables: TableNames
-) -> Iterator[Widget]:
-    """The rows for a column of names; `take` is called with the new name or names."""
-    names = tables.of(kind.table)
-    if isinstance(kind, References):
-        yield from _list_rows(label, column, value, take, tables.pages, (kind.table, names))
-    elif isinstance(kind, Reference):
-        first = (NONE,) if column.is_optional else ()
-        word = kind.words
-        yield Choice(
-            label,
-            column.help,
-            names=(*first, *word, *(name for name in names if name not in (*first, *word))),
-            present=NONE if value is None else value,
-            choose=partial(_choose, take, column.is_optional),
-        )
-
-
-def _list_rows(
-    label: str,
-    column: Column,
-    value: Sequence[str] | None,
-    take: TakeNames,
-    pages: dict[str, int],
-    table: tuple[str, Sequence[str]],
-) -> Iterator[Widget]:
-    """A switch that gives an empty list; below it a switch for each name of a page."""
-    what, names = table
-    is_given = value is not None
-    short = short_label(label, LONGEST_LABEL)
-    yield Switch(short, column.help, is_on=is_given, flip=partial(take, None if is_given else ()))
-    if value is None:
-        return
-    page = min(pages.get(what, 0), max(0, len(names) - 1) // NAMES_A_PAGE)
-    if len(names) > NAMES_A_PAGE:
-        numbers = range(0, len(names), NAMES_A_PAGE)
-        titles = [f"{first + 1} to {min(first + NAMES_A_PAGE, len(names))}" for first in numbers]
-        yield Choice(
-            what,
-            within=label,
-            help=f"The page of the {len(names)} {what} that is shown below; {len(value)} are in the list.",
-            names=titles,
-            present=titles[page],
-            choose=lambda title: pages.__setitem__(what, titles.index(title)),
-            turns_pages=True,
-        )
-    for name in names[page * NAMES_A_PAGE : (page + 1) * NAMES_A_PAGE]:
-        wanted = {*value} ^ {name}
-        chosen = tuple(each for each in names if each in wanted)
-        is_in = name in value
-        help = f"{'Remove' if is_in else 'Add'} {name} {'from' if is_in else 'to'} the list: {label}."
-        yield Switch(f"{INDENT}{name}", help, within=label, is_on=is_in, flip=partial(take, chosen))
-
-
-def _choose(take: TakeNames, has_none: bool, name: str) -> object:
-    return take(None if has_none and name == NONE else name)
+def _put_value(put: Put, name: str, value: object) -> object:
+    return put({name: value})
 
 
 def _help(column: Column) -> str:
@@ -313,17 +243,99 @@ def _help(column: Column) -> str:
     return f"{column.help} In {column.unit}." if column.unit else column.help
 
 
-def _put(put: Put, name: str, value: object) -> object:
-    return put({name: value})
+def _bar(menu: _Menu, label: str, name: str, column: Column, value: float | None) -> Bar:
+    """The bar of a number. A box switches a number that may be absent, or without a limit."""
+    axis, kind, is_whole = menu.axis, column.kind, isinstance(column.kind, Whole)
+    usual = column.bar or BarRange(0, 1, 0.01)
+    if column.unit == WORLD_UNITS and isinstance(kind, Number) and kind.at_least == 0:
+        usual = menu.world.range_of_lengths(is_zero_left_out=kind.above)
+    elif column.unit == WORLD_UNITS:
+        usual = menu.world.range_of(axis)
+    endless = kind.endless if isinstance(kind, Number) else None
+    put, present = partial(_put_value, menu.put, name), value
+    flip: Callable[[], object] | None = None
+    if endless is not None:
+        limit = menu.world.end_beyond(axis, endless, menu.edge) if axis else 0.0
+        present = None if value == endless else value
+        flip = partial(put, limit if present is None else endless)
+    elif column.is_optional:
+        start = usual.low if column.start is None else column.start
+        flip = partial(put, _number(start, is_whole) if value is None else None)
+    return Bar(
+        label,
+        _help(column),
+        value=present,
+        **usual._asdict(),
+        unit=column.unit if len(column.unit) < 8 else "",
+        put=lambda value: put(_number(value, is_whole)),
+        flip=flip,
+    )
 
 
-def _put_number(put: Put, name: str, is_whole: bool, value: float) -> object:
-    return put({name: int(value) if is_whole and value == int(value) else value})
+def _number(value: float, is_whole: bool) -> float:
+    """A number as a column of whole numbers takes it."""
+    return int(value) if is_whole and value == int(value) else value
 
 
-def _put_share(put: Put, name: str, curve: AngleCurve, number: int, share: float) -> object:
-    return put({name: (*curve[:number], (curve[number][0], share), *curve[number + 1 :])})
+def _vector_rows(menu: _Menu, label: str, column: Column, vector: Vector, put: PutValue) -> Iterator[Widget]:
+    def put_component(number: int, value: float) -> object:
+        return put((*vector[:number], value, *vector[number + 1 :]))
+
+    for number, axis in enumerate(AXES):
+        is_place = column.unit == WORLD_UNITS
+        usual = menu.world.range_of(axis) if is_place else BarRange(-1, 1, 0.01)
+        yield Bar(
+            f"{label} {axis}",
+            _help(column),
+            value=vector[number],
+            **usual._asdict(),
+            put=partial(put_component, number),
+        )
 
 
-def _put_component(put: Put, name: str, vector: Vector, number: int, value: float) -> object:
-    return put({name: (*vector[:number], value, *vector[number + 1 :])})
+def _curve_rows(
+    label: str, kind: AngleCurveKind, help: str, curve: AngleCurve | None, put: PutValue
+) -> Iterator[Widget]:
+    """A switch for a curve over angles, and a bar for the share at each of its points."""
+    begun = kind.start if curve is None else None
+    yield Switch(label, help, is_on=curve is not None, flip=partial(put, begun))
+    shares = dict(curve or ())
+
+    def put_share(angle: float, share: float) -> object:
+        return put(tuple({**shares, angle: share}.items()))
+
+    for number, (angle, share) in enumerate(shares.items()):
+        usual = bar_within(0 if number else kind.least, 1)
+        yield Bar(
+            f"at {angle:g} degrees",
+            help,
+            value=share,
+            **usual._asdict(),
+            put=partial(put_share, angle),
+        )
+
+
+def _list_rows(
+    label: str,
+    column: Column,
+    table: str,
+    value: Sequence[str] | None,
+    put: PutValue,
+    tables: TableNames,
+) -> Iterator[Widget]:
+    """A switch that gives an empty list; below it a switch for each name of a page."""
+    begun = () if value is None else None
+    yield Switch(label, column.help, is_on=value is not None, flip=partial(put, begun))
+    if value is None:
+        return
+    names, pages = tables.of(table), -(-len(tables.of(table)) // NAMES_A_PAGE)
+    page = max(0, min(tables.pages.get(table, 0), pages - 1))
+    if pages > 1:
+        help = f"The page of the {len(names)} {table} that is shown below; {len(value)} are in the list."
+        yield replace(page_choice(help, page, pages, partial(tables.pages.__setitem__, table)), within=label)
+    for name in names[page * NAMES_A_PAGE : (page + 1) * NAMES_A_PAGE]:
+        wanted = {*value} ^ {name}
+        chosen = tuple(each for each in names if each in wanted)
+        is_in = name in value
+        help = f"{'Remove' if is_in else 'Add'} {name} {'from' if is_in else 'to'} the list: {label}."
+        yield Switch(f"{INDENT}{name}", help, within=label, is_on=is_in, flip=partial(put, chosen))

@@ -18,7 +18,8 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
-from autocolor import read_palette
+from autocolor import image, read_palette, read_scene
+from autocolor.scene.arrangements import ARRANGEMENTS, arranged
 from autocolor.screens.file_actions import bring_paints
 from autocolor.screens.viewer import Viewer
 from docs.generate.blocks import blocks_of, commands_of
@@ -65,6 +66,14 @@ def light_alone() -> Field:
     return sheet("light", ("key", "side", "back", "rim"))
 
 
+def light_arrangements() -> Field:
+    """The coupe in each arrangement of lights."""
+    scene = read_scene(ROOT / "scenes" / "coupe")
+    pictures = {name: image(arranged(scene, name), size=(240, 180), smooth=4) for name in ARRANGEMENTS}
+    panels = [captioned(picture[30:150], name, 1) for name, picture in pictures.items()]
+    return np.vstack([np.hstack(panels[:3]), np.hstack(panels[3:])])
+
+
 def light_place() -> Field:
     """The screen light & view, while the side light is dragged in the view from above."""
     with open_viewer("coupe", "light and view") as (viewer, display):
@@ -86,7 +95,7 @@ def light_flaps() -> Field:
 def light_highlight() -> Field:
     """The lights screen, after the highlight of the back light was dragged to the front of the hood."""
     with open_viewer("coupe", "lights") as (viewer, display):
-        click(viewer, "back")
+        click(viewer, " 3 back")
         grab(viewer, "highlight of back", (-56, 24)).track = False
         viewer.poll()
         idle(viewer)
@@ -146,7 +155,8 @@ def studio_sent() -> Field:
 
 PICTURES: Final[Sequence[Callable[[], Field]]] = (
     start_paint, start_menu,
-    light_alone, light_place, light_spot, light_flaps, light_highlight, light_links, light_exposure,
+    light_alone, light_arrangements, light_place, light_spot, light_flaps, light_highlight, light_links,
+    light_exposure,
     studio_mixing, studio_split, studio_explain, studio_sent,
 )  # fmt: skip
 
@@ -202,8 +212,8 @@ def write(pictures: Sequence[Callable[[], Field]]) -> None:
     for picture in pictures:
         if picture.__name__ in sys.argv[1:] or len(sys.argv) == 1:
             path = path_of(picture)
-            image = Image.fromarray(picture())
-            image.quantize(COLORS, kmeans=5, dither=Image.Dither.NONE).save(path, optimize=True)
+            field = Image.fromarray(picture())
+            field.quantize(COLORS, kmeans=5, dither=Image.Dither.NONE).save(path, optimize=True)
             print(path, path.stat().st_size)
 
 

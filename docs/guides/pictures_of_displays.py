@@ -191,7 +191,7 @@ def paper_blends() -> Field:
 def elsewhere_lights() -> Field:
     """The studio on a display, with the menu that the pointer brings at the right edge."""
     with open_viewer("coupe", "lights") as (viewer, display):
-        click(viewer, "key")
+        click(viewer, " 1 key")
         point_at(viewer, 632, 200)
         return display.field()
 

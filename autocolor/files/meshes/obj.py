@@ -67,7 +67,7 @@ def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
     surfaces, sentences = read_materials(path, statements.libraries, wanted)
     return dataclasses.replace(
         report,
-        repairs=report.repairs + sentences,
+        repairs=sentences + report.repairs,
         material_of_part=material_of_part,
         materials=surfaces,
     )

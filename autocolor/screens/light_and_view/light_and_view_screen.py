@@ -6,74 +6,45 @@ Two views set all three coordinates, and no number is typed. Positions and direc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Any, Final
 
-from autocolor.checks import Vector
+from autocolor.arrays import Floats
 from autocolor.errors import UsageError
+from autocolor.scene.orbit import side_name
 from autocolor.scene.scene import FRONTS
 from autocolor.screens.cached import Cached
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
-from autocolor.screens.light_and_view.handles import (
-    AIM,
-    FLAP,
-    LIGHT,
-    MovablePoint,
-    handles_in,
-    mark_of,
-    movable_of,
-    point_text,
-    side_of,
-)
-from autocolor.screens.light_and_view.marks import SideItems
+from autocolor.screens.light_and_view.marks import FLAP, MarkedPoint, marks_in
 from autocolor.screens.light_and_view.object_lines import ObjectLines, sampled
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
+    LINES_BETWEEN,
     PICTURE_AREA,
     SIDES,
     OrthographicViews,
-    PointMark,
-    ViewSide,
-    area_of_picture,
     fitted_views,
     shown_points,
     side_at,
 )
 from autocolor.screens.light_parameters import KIND, parameter_rows
-from autocolor.screens.picture.over_picture import camera_rows
-from autocolor.screens.picture.picture_edits import PictureEdits, side_name, target_of
+from autocolor.screens.picture import picture_edits as edits
+from autocolor.screens.picture.over_picture import camera_rows, light_switches
 from autocolor.screens.screen import Content, Handle, Screen, Surroundings
 from autocolor.screens.session import Session
-from autocolor.widgets.items import (
-    GRAY,
-    SLATE,
-    Item,
-    image,
-    outline,
-    text,
-)
+from autocolor.widgets.items import CHARACTER_LINES, GRAY, SLATE, Item, filled, image, outline, text
 from autocolor.widgets.menu import Section
-from autocolor.widgets.widget import (
-    NOWHERE,
-    Button,
-    Choice,
-    Pair,
-    Steps,
-    Switch,
-    Widget,
-    titled,
-)
+from autocolor.widgets.widget import Button, Choice, Pair, Steps, Widget
 
 CLOSER: Final = 1.25
 """Assumed: the ratio of scales for each step of RESCALE."""
 
-ANGLE: Final = 5.0
-"""Degrees for each step of ANGLE."""
-
 UNKNOWN: Final = "unknown"
 """The choice of no front."""
 
+COLUMNS: Final = (KIND, "concentration", "cone_angle", "flaps")
+"""The columns of the chosen light that have rows; others have handles, or rows on the lights screen."""
 
 # DISPLAY VIEW, in the fourth quarter.
 #
@@ -98,31 +69,16 @@ class LightAndViewScreen(Screen):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self.edits = PictureEdits(session)
+        self.views = OrthographicViews((0.0, 0.0, 0.0), 1.0)
+        """The scale and the middle of the three views."""
         self._lines = ObjectLines()
-        self._sides = {side: SideItems(side) for side in SIDES}
         self._shown = PICTURE
         self._small: Cached[Item] = Cached()
-        self._handles: Cached[list[Handle]] = Cached()
-        self._fitted: Cached[OrthographicViews] = Cached()
-        self._views: OrthographicViews | None = None
+        self._marked: Cached[tuple[list[Item], list[Handle]]] = Cached()
         self._eye_is_chosen = False
-        self._moved: Vector | None = None
-        """The point that is being placed. Its coordinate across the view stays."""
-        self._has_lines = False
-        """Whether lines through that point run across the views."""
-        self._mark = PointMark((0.0, 0.0), (0.0, 0.0))
-        """The mark that was grabbed."""
-
-    @property
-    def views(self) -> OrthographicViews:
-        """The scale and the middle of the three views."""
-        if self._views is None:
-            scene = self.session.scene
-            self._views = self._fitted.of(
-                lambda: fitted_views(scene.object_coordinates), scene.mesh, scene.parts
-            )
-        return self._views
+        self._held: MarkedPoint | None = None
+        """The point that is being placed, with the mark that was grabbed. Its coordinate across the view
+        stays."""
 
     @property
     def chosen(self) -> str:
@@ -136,17 +92,18 @@ class LightAndViewScreen(Screen):
             self.session.choose_light(light)
 
     def enter(self) -> None:
-        self._views, self._eye_is_chosen = None, False
+        self._eye_is_chosen = False
+        self.views = fitted_views(self.session.scene.object_coordinates)
 
     # How it looks.
 
     def build(self, around: Surroundings) -> Content:
         scene, views = self.session.scene, self.views
+        items, handles = self._marked.of(self._mark, scene, views, self.chosen, self._held)
         return Content(
             base=self._lines.page(scene, views),
-            # The items know where the numerals are by which handles are grabbed.
-            items=self._items(),
-            handles=self._driven_handles(),
+            items=[*(filled(area, SLATE) for area in LINES_BETWEEN), *self._quarter(), *items],
+            handles=handles,
             rows=self._rows,
             hint=self._hint,
             pick=self._pick,
@@ -155,47 +112,39 @@ class LightAndViewScreen(Screen):
             idle=lambda: self._lines.find_next(scene, views),
         )
 
-    def _items(self) -> Sequence[Item]:
-        scene, views, chosen = self.session.scene, self.views, self.chosen
-        target, moved = target_of(scene), self._moved if self._has_lines else None
-        items = self._quarter()
-        for side_items in self._sides.values():
-            items += side_items.items(views, scene, target, chosen, moved)
-        return items
+    def _mark(self) -> tuple[list[Item], list[Handle]]:
+        """The items of the three views, and the handles there."""
+        scene, views, held = self.session.scene, self.views, self._held
+        items: list[Item] = []
+        handles: list[Handle] = []
+        for side in SIDES:
+            if held is not None and held.movable.what != FLAP:
+                # Thin lines, which continue in the views beside and above.
+                across = views.lines_through(side, held.point)
+                items += [filled(line, SLATE) for line in across if side.area.covers(line)]
+            marks, found = marks_in(scene, views, side, self.chosen, self._hold)
+            items += marks
+            let_go = partial(setattr, self, "_held", None)
+            handles += [handle._replace(place=self._place, let_go=let_go) for handle in found]
+        return items, handles
 
     def _quarter(self) -> list[Item]:
         """The items of DISPLAY VIEW: the view as a picture, or as the lines that the eye sees."""
-        studio = self.session.studio
-        words = studio.words
-        lines, elements = words.shape
-        area = area_of_picture(PICTURE_AREA.inset(FRAME), elements / lines)
-        if self._shown == MESH:
-            words = self._lines.of_points(self.session.scene, studio.sight.points, area)
-        title = text("view", PICTURE_AREA.left + 8, PICTURE_AREA.top + 4, GRAY)
-        small = self._small.of(lambda: image(sampled(words, area.height, area.width), *area[:2]), words)
-        return [title, outline(area.inset(-1), SLATE), small]
+        studio, scene = self.session.studio, self.session.scene
+        lines, elements = studio.words.shape
+        area = PICTURE_AREA.inset(FRAME)
+        height = min(area.height, area.width * lines // elements)
+        top = area.top + (area.height - height) // 2
+        area = area._replace(top=top, bottom=top + height - 1)
+        is_mesh, points = self._shown == MESH, studio.sight.points
 
-    # Handles.
+        def small() -> Item:
+            words = self._lines.of_points(scene, points, area) if is_mesh else studio.words
+            return image(sampled(words, area.height, area.width), *area[:2])
 
-    def _driven_handles(self) -> Sequence[Handle]:
-        scene, views, chosen = self.session.scene, self.views, self.chosen
-        handles = self._handles.of(lambda: handles_in(scene, views, chosen), scene, views, chosen)
-        signs = {
-            MovablePoint(AIM if cross.is_aim else LIGHT, side.name, scene.lights[cross.number - 1].name): area
-            for side, items in self._sides.items()
-            for cross, area in items.numerals
-            if cross.number <= len(scene.lights)
-        }
-        return [
-            handle._replace(
-                sign=signs.get(movable, NOWHERE),
-                place=partial(self._place, movable),
-                hold=partial(self._hold, movable),
-                let_go=partial(setattr, self, "_moved", None),
-            )
-            for handle in handles
-            for movable in [movable_of(handle)]
-        ]
+        sources = (points, scene.mesh, scene.parts) if is_mesh else (studio.words,)
+        title = text("view", PICTURE_AREA.left + 8, PICTURE_AREA.bottom - CHARACTER_LINES - 3, GRAY)
+        return [title, outline(area.inset(-1), SLATE), self._small.of(small, *sources)]
 
     def _hint(self, element: int, line: int) -> str:
         if PICTURE_AREA.has(element, line):
@@ -205,89 +154,83 @@ class LightAndViewScreen(Screen):
             return self.help
         point = self.views.placed(side, (0.0, 0.0, 0.0), element, line)
         shown = "  ".join(f"{AXES[axis]} {point[axis]:g}" for axis in (side.right, side.up))
-        return f"{self._name_of(side)}: {shown}"
-
-    def _name_of(self, side: ViewSide) -> str:
-        return side_name(self.session.scene, side.toward)
+        return f"{side_name(self.session.scene, side.toward)}: {shown}"
 
     # Gestures.
 
-    def _hold(self, movable: MovablePoint) -> None:
-        self.choose(movable.light)
-        self._moved = movable.point_in(self.session.scene, self.views)
-        self._mark = mark_of(movable, side_of(movable), self.session.scene, self.views)
-        self._has_lines = movable.what != FLAP
+    def _hold(self, point: MarkedPoint) -> None:
+        self.choose(point.movable.light)
+        self._held = point
 
-    def _place(self, movable: MovablePoint, element: int, line: int) -> None:
-        session, views = self.session, self.views
-        side = side_of(movable)
-        area = side.area
+    def _place(self, element: int, line: int) -> None:
+        """Move the held point to a place. Raises UsageError if a pick is not in the view of the point."""
+        session, views, held = self.session, self.views, self._held
+        assert held is not None
+        movable, side = held.movable, held.movable.side
         if session.moving:
-            if not self._mark.is_outside:
-                element = min(max(element, area.left), area.right)
-                line = min(max(line, area.top), area.bottom)
-            element, line = self._mark.dragged(element, line)
-        elif not area.has(element, line):
-            raise UsageError(
-                f"{movable.label}: its new place must be in the {self._name_of(side)} view; pick it there"
-            )
-        point = self._moved or movable.point_in(session.scene, views)
-        if point is None:
-            return
-        point = views.placed(side, point, element, line)
+            if not held.mark.is_outside:
+                element = min(max(element, side.area.left), side.area.right)
+                line = min(max(line, side.area.top), side.area.bottom)
+            element, line = held.mark.dragged(element, line)
+        elif not side.area.has(element, line):
+            name = side_name(session.scene, side.toward)
+            raise UsageError(f"{movable.label}: its new place must be in the {name} view; pick it there")
+        point = views.placed(side, held.point, element, line)
         session.edit(movable.put(session.scene, point))
-        self._moved = point
-        if movable.what == FLAP:
-            now = movable.point_in(session.scene, views) or point
-            session.tell(f"{movable.label} {views.rounded(now[AXES.index(movable.axis)]):g}")
-        else:
-            session.tell(f"{movable.label}: {point_text(point, views)}")
+        self._held = held._replace(point=point)
+        session.tell(movable.message(session.scene, point, views))
 
     def _pick(self, gesture: Gesture) -> None:
         if PICTURE_AREA.has(gesture.element, gesture.line):
-            self._show(PICTURE if self._shown == MESH else MESH)
+            self._shown = PICTURE if self._shown == MESH else MESH
         else:
             self.session.tell(self.help)
 
     def _drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        if PICTURE_AREA.has(start.element, start.line):
-            self.edits.turn(*turn_between(last.element, last.line, now.element, now.line))
-            return
         side = side_at(start.element, start.line)
-        if side is not None:
-            center = list(self.views.center)
-            center[side.right] -= (now.element - last.element) / self.views.scale
-            center[side.up] += (now.line - last.line) / self.views.scale
-            self._views = self.views.centered(center)
+        if PICTURE_AREA.has(start.element, start.line):
+            edits.turn(self.session, *turn_between(last.element, last.line, now.element, now.line))
+        elif side is not None:
+            self.views = self.views.panned(side, now.element - last.element, now.line - last.line)
 
     def _wheel(self, gesture: Gesture) -> None:
         if PICTURE_AREA.has(gesture.element, gesture.line):
-            self.edits.move(wheel_ratio(gesture.steps))
+            edits.move(self.session, wheel_ratio(gesture.steps))
         else:
-            self.zoom(gesture.steps / 2)
+            self._zoom(gesture.steps / 2)
 
     # The menu.
 
     def _rows(self) -> Sequence[Widget]:
-        session = self.session
+        session, scene, chosen = self.session, self.session.scene, self.chosen
+        light = scene.lights[chosen] if chosen else None
+        fronts: dict[str, Any] = {UNKNOWN: None, **{front: front for front in FRONTS}}
         return [
-            *light_rows(session, self.edits, self.chosen, self.choose),
+            Section("eye & lights"),
+            Button(
+                "eye",
+                "Choose the eye: its target can then be grabbed where a light's aim is, too.",
+                run=partial(self.choose, ""),
+                is_chosen=not chosen,
+            ),
+            *light_switches(session, chosen, self.choose, has_numbers=True),
+            *([Section("chosen light"), *parameter_rows(session, light, COLUMNS)] if light else []),
             Section("three views"),
-            Steps("rescale", "RESCALE: move the three views farther or nearer.", step=self.zoom),
+            Steps("rescale", "RESCALE: move the three views farther or nearer.", step=self._zoom),
             Pair(
                 "fit all",
                 "RESCALE: show everything, or the object, with space left on all sides.",
-                run=self.fit,
+                run=lambda: self._fit(shown_points(scene), "everything"),
                 other="object",
-                run_other=self.fit_object,
+                run_other=lambda: self._fit(scene.object_coordinates, "the object"),
             ),
-            Button("fit surface", f"Show the chosen surface: {session.surface_name}.", run=self.fit_surface),
+            Button("fit surface", f"Show the chosen surface: {session.surface_name}.", run=self._fit_surface),
             Choice(
                 "front",
                 "Toward which axis the object faces: it names the views from the sides.",
-                names=(UNKNOWN, *FRONTS),
-                present=session.scene.front or UNKNOWN,
-                choose=self._face,
+                names=tuple(fronts),
+                present=scene.front or UNKNOWN,
+                choose=lambda front: session.edit(scene.replace(front=fronts[front])),
             ),
             Section("display view"),
             Choice(
@@ -295,82 +238,23 @@ class LightAndViewScreen(Screen):
                 "DISPLAY VIEW: the picture, or the mesh, as the eye sees it.",
                 names=(PICTURE, MESH),
                 present=self._shown,
-                choose=self._show,
+                choose=partial(setattr, self, "_shown"),
             ),
-            Steps("angle", "ANGLE: turn the picture.", step=self._tilt, signs=("<", ">")),
-            Button("frame", "Move the eye so that the object fills the picture.", run=self.edits.rescale),
-            Button("as opened", "Look as the scene's file says.", run=self.edits.as_opened),
-            *camera_rows(self.edits),
+            Steps("angle", "ANGLE: turn the picture.", step=partial(edits.tilt, session), signs=("<", ">")),
+            Button("frame", "Fill the picture with the object.", run=partial(edits.rescale, session)),
+            Button("as opened", "Look as the scene's file says.", run=partial(edits.as_opened, session)),
+            *camera_rows(session),
         ]
 
-    def fit(self) -> None:
-        """Show everything, with space left on all sides."""
-        self._views = fitted_views(shown_points(self.session.scene))
-        self.session.tell("the views show everything")
+    def _fit(self, points: Floats, shown: str) -> None:
+        self.views = fitted_views(points)
+        self.session.tell(f"the views show {shown}")
 
-    def fit_object(self) -> None:
-        """Show the object."""
-        self._views = fitted_views(self.session.scene.object_coordinates)
-        self.session.tell("the views show the object")
-
-    def fit_surface(self) -> None:
-        """Show the chosen surface."""
+    def _fit_surface(self) -> None:
         scene, name = self.session.scene, self.session.surface_name
         numbers = [part for part in scene.mesh.parts_in_use if scene.parts[part].surface == name]
         if numbers:
-            self._views = fitted_views(scene.mesh.coordinates_of_parts(numbers))
-            self.session.tell(f"the views show {name}")
+            self._fit(scene.mesh.coordinates_of_parts(numbers), name)
 
-    def _show(self, what: str) -> None:
-        self._shown = what
-
-    def _face(self, front: str) -> None:
-        changes: dict[str, Any] = {"front": None if front == UNKNOWN else front}
-        self.session.edit(self.session.scene.replace(**changes))
-
-    def zoom(self, steps: float) -> None:
-        """Move nearer, or farther."""
-        self._views = self.views.zoomed(CLOSER**steps)
-
-    def _tilt(self, steps: float) -> None:
-        self.edits.tilt(steps * ANGLE)
-        self.session.tell(f"angle {self.session.scene.view.angle:g} degrees")
-
-
-# The menu's rows for the eye and the lights, and for columns of the chosen light that have no handle.
-
-COLUMNS: Final = (KIND, "concentration", "cone_angle", "flaps")
-"""The columns that have rows; others have handles, or rows on the lights screen."""
-
-
-def light_rows(
-    session: Session, edits: PictureEdits, chosen: str, choose: Callable[[str], object]
-) -> list[Widget]:
-    """The rows of the eye and of all lights, with their numbers in the views, and of the chosen light.
-
-    `chosen` is the name of a light, or empty for the eye; `choose` is called with another name.
-    """
-    rows: list[Widget] = [
-        Section("eye & lights"),
-        Button(
-            "eye",
-            "Choose the eye: its target can then be grabbed where a light's aim is, too.",
-            run=partial(choose, ""),
-            is_chosen=not chosen,
-        ),
-    ]
-    for number, light in enumerate(session.scene.lights, start=1):
-        rows.append(
-            Switch(
-                f"{number} {light.name}",
-                f"Switch {titled('light', light.name)} on or off; beside the box: choose it.",
-                is_on=light.on,
-                flip=partial(edits.switch_light, number - 1),
-                choose=partial(choose, light.name),
-                is_chosen=light.name == chosen,
-            )
-        )
-    if chosen:
-        light = session.scene.lights[chosen]
-        rows += [Section("chosen light"), *parameter_rows(session, light, COLUMNS)]
-    return rows
+    def _zoom(self, steps: float) -> None:
+        self.views = self.views.zoomed(CLOSER**steps)

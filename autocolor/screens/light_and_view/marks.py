@@ -1,31 +1,31 @@
-"""The items of one of the three views: the object, the eye, and the lights with their numbers.
+"""The eye and the lights in the three views: their movable points, signs, numerals and handles.
 
-The number of instructions takes the time: so lines of one color are drawn together, and unchanged items are
-cached. The chosen eye or light is yellow and above all others; the numbers are above all lines.
+The number of instructions takes the time: so lines of one color are drawn together. The chosen eye or light
+is yellow and above all others; the numbers are above all lines.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from itertools import product
-from typing import Final, NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, lru_cache, partial
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats
+from autocolor.arrays import Floats, Numbers
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
+from autocolor.scene.orbit import side_name, target_of
 from autocolor.scene.scene import Scene
-from autocolor.scene.view import View
-from autocolor.screens.cached import Cached
+from autocolor.scene.view import ASPECT, View
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
-    PICTURE_ASPECT,
     OrthographicViews,
+    PointMark,
     ViewSide,
 )
-from autocolor.screens.picture.picture_edits import side_name
+from autocolor.screens.screen import Handle
 from autocolor.widgets.items import (
     BLUE,
     CHARACTER,
@@ -40,13 +40,151 @@ from autocolor.widgets.items import (
     area_of,
     between,
     clipped,
-    filled,
     joined,
     rounded,
     text,
     together,
 )
+from autocolor.widgets.widget import NOWHERE
 from ramtek_emu import instructions
+
+# Points that can be moved.
+
+EYE: Final = "eye"
+TARGET: Final = "target"
+LIGHT: Final = "light"
+AIM: Final = "aim"
+DIRECTION: Final = "direction"
+FLAP: Final = "flap"
+"""The kinds of movable points."""
+
+DIRECTION_LENGTH: Final = 40.0
+"""Assumed: the length of the arrow of a light with a direction and no aim, in elements."""
+
+BETWEEN: Final = 14
+"""Assumed: elements or lines between neighboring handles along the line of a flap."""
+
+
+class MovablePoint(NamedTuple):
+    """A point that can be moved in a view: the eye, its target, or a point of a light.
+
+    A flap has an axis and an end.
+    """
+
+    what: str
+    side: ViewSide
+    light: str = ""
+    axis: str = ""
+    end: str = ""
+
+    @property
+    def label(self) -> str:
+        """The name of the point in the message line."""
+        what = f"flap {self.axis}, {self.end}" if self.what == FLAP else self.what
+        return self.light if self.what == LIGHT else f"{self.light}: {what}" if self.light else what
+
+    def put(self, scene: Scene, point: Vector) -> Scene:
+        """The scene with the movable point at `point`. An end of a flap does not pass the other end."""
+        if self.what == EYE:
+            return scene.with_view(eye=point)
+        if self.what == TARGET and scene.view.target is None:
+            return scene.with_view(direction=_step(scene.view.eye, point))
+        if self.what == TARGET:
+            return scene.with_view(target=point)
+        if self.what == LIGHT:
+            return scene.with_light_in_world(self.light, position=point)
+        if self.what == AIM:
+            return scene.with_light_in_world(self.light, aim=point)
+        if self.what == DIRECTION:
+            start = scene.lights_in_world[self.light].position
+            return scene.with_light_in_world(self.light, direction=_step(start, point))
+        value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
+        value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
+        flaps: Any = {self.axis: {self.end: value}}
+        return scene.with_light(self.light, flaps=flaps)
+
+    def message(self, scene: Scene, point: Vector, views: OrthographicViews) -> str:
+        """The text of the message line for the movable point at `point` of a scene."""
+        if self.what != FLAP:
+            places = zip(AXES, point, strict=True)
+            return f"{self.label}: " + "  ".join(f"{axis} {views.rounded(place):g}" for axis, place in places)
+        flap = getattr(scene.lights[self.light].flaps, self.axis)
+        return f"{self.label} {views.rounded(getattr(flap, self.end)):g}"
+
+
+def _step(start: Vector, end: Vector) -> Vector:
+    """The direction from a point to another."""
+    return end[0] - start[0], end[1] - start[1], end[2] - start[2]
+
+
+class MarkedPoint(NamedTuple):
+    """A movable point in a view: its coordinates, its mark, and the end of the arrow that begins there.
+
+    A point of a light has the light, in world coordinates, and its number. All coordinates of an end of a
+    flap are its value, and its `line` runs across the view (Paper: Figure 9).
+    """
+
+    movable: MovablePoint
+    point: Vector
+    mark: PointMark
+    end: Vector | None = None
+    light: Light | None = None
+    number: int = 0
+    line: Area = NOWHERE
+
+    @property
+    def pixel(self) -> tuple[int, int]:
+        """The element and the line of the mark."""
+        return round(self.mark.place[0]), round(self.mark.place[1])
+
+
+def points_in(
+    scene: Scene, views: OrthographicViews, side: ViewSide, chosen: str
+) -> tuple[tuple[MarkedPoint, ...], tuple[MarkedPoint, ...]]:
+    """The movable points in a view; those of the chosen light or eye are apart, in the second tuple.
+
+    `chosen` is the name of a light, or empty for the eye. A chosen light has its flaps.
+    """
+    eye = MovablePoint(EYE, side), scene.view.eye, MovablePoint(TARGET, side), target_of(scene), None
+    arrows: list[tuple[MovablePoint, Vector, MovablePoint, Vector | None, Light | None]] = [eye]
+    for light in scene.lights_in_world:
+        start = MovablePoint(LIGHT, side, light.name)
+        end = start._replace(what=DIRECTION if light.aim is None else AIM)
+        arrows.append((start, light.position, end, arrow_end(views, light), light))
+    points: tuple[list[MarkedPoint], list[MarkedPoint]] = [], []
+    for number, (start, point, end, end_point, owner) in enumerate(arrows):
+        group = points[start.light == chosen]
+        if owner is not None and start.light == chosen:
+            group += _flaps_in(owner, views, side)
+        if end_point is not None:
+            at = views.position(side, end_point)
+            group.append(MarkedPoint(end, end_point, PointMark(at, at), None, owner, number))
+        mark = views.mark(side, point, end_point)
+        group.append(MarkedPoint(start, point, mark, end_point, owner, number))
+    return tuple(points[False]), tuple(points[True])
+
+
+def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
+    """The end of a light's arrow: its aim, or a point in its direction; None without either."""
+    if light.aim is not None or light.axis is None:
+        return light.aim
+    x, y, z = light.position
+    length = DIRECTION_LENGTH / views.scale
+    return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
+
+
+def _flaps_in(light: Light, views: OrthographicViews, side: ViewSide) -> Iterator[MarkedPoint]:
+    """The ends of a light's flaps that a view shows: of its two coordinates, finite and within its area."""
+    for number, axis in enumerate((side.right, side.up)):
+        flap = getattr(light.flaps, AXES[axis])
+        for end in ("minimum", "maximum") if flap is not None else ():
+            value = float(getattr(flap, end))
+            point = value, value, value
+            if math.isfinite(value) and side.area.covers(line := views.lines_through(side, point)[number]):
+                at = views.position(side, point)
+                movable = MovablePoint(FLAP, side, light.name, AXES[axis], end)
+                yield MarkedPoint(movable, point, PointMark(at, at), light=light, line=line)
+
 
 # Arrows on the screen: a shaft, and a head whose size does not depend on the shaft. Shapes are positions
 # along an arrow and across it, joined by strokes.
@@ -57,20 +195,15 @@ HEAD: Final = np.array([(-7, 3.15), (0, 0), (-7, -3.15)])
 OUTWARD: Final = np.array([(6, 0), (-4, 5), (-4, -5), (6, 0)])
 """Assumed: the arrow at the edge of a view that leads to a point outside."""
 
-SHORTEST: Final = 3.0
-"""Assumed: a shorter arrow, in elements, has no head: it points at the viewer or away."""
-
 
 def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
-    """The strokes of an arrow from a position to another, (1 or 3, 4).
+    """The strokes of an arrow from a position to another, (3, 4).
 
     >>> arrow((0, 0), (20, 0))[1:].round(2).tolist()
     [[13.0, 3.15, 20.0, 0.0], [20.0, 0.0, 13.0, -3.15]]
     """
-    shaft, length = joined([start, end]), math.dist(start, end)
-    if length < SHORTEST:
-        return shaft
-    return together([shaft, turned(min(1.0, length / 14) * HEAD, unit(start, end), end)])
+    head = min(1.0, math.dist(start, end) / 14) * HEAD
+    return together([joined([start, end]), turned(head, unit(start, end), end)])
 
 
 def turned(shape: Floats, along: Floats, place: tuple[float, float]) -> Floats:
@@ -85,59 +218,42 @@ def unit(start: tuple[float, float], end: tuple[float, float]) -> Floats:
     return vector
 
 
-# The marks of the eye in the three views: an eye, its view direction, and the edges of the picture.
+# The eye and the lights. Outside of a view, they have an arrow at its edge.
 #
-# Paper: Figure 5, "Each view shows the eye position and view direction". Assumed: the edges of the picture
-# are shown too.
+# Paper: Figure 5, "Each view shows the eye position and view direction", "the position and direction of each
+# light. Point source lights would be shown with only a cross at the light position". Assumed: the edges of
+# the picture are shown too.
 
 LIDS: Final = np.array([(-7, 0), (-3, -3), (3, -3), (7, 0), (3, 3), (-3, 3), (-7, 0)], np.float64)
 PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float64)
 """The eye: positions relative to the eye's position, joined by strokes."""
 
-BESIDE: Final = 12.0
+BESIDE: Final = 16.0
 """Assumed: elements or lines from the arrow at the edge back to the eye that it belongs to."""
 
-
-class EyeMarks(NamedTuple):
-    """The strokes of the eye, of the arrow to its target, and of the edges of the picture, each (n, 4)."""
-
-    eye: Floats
-    direction: Floats
-    picture: Floats
+CROSS: Final = np.array([(-4, 0, 4, 0), (0, -4, 0, 4)], np.float64)
+"""A light: strokes relative to its position."""
 
 
-def eye_marks(
-    views: OrthographicViews, side: ViewSide, view: View, target: Vector, aspect: float = PICTURE_ASPECT
-) -> EyeMarks:
-    """The marks of the eye and its view in one of the three views, clipped by its area.
-
-    An eye outside the area stands behind an arrow at the edge.
-
-    The arrow ends at `target`: the view's target, or a point in its direction. `aspect` is the width of the
-    picture over its height. The picture is drawn at the depth of the target, as the base of a pyramid with
-    the eye at its top.
-    """
-    at, mark = views.position(side, view.eye), views.mark(side, view.eye, target)
-    corners = views.positions(side, picture_corners(view, target, aspect))
-    picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
+def sign_of(what: str, mark: PointMark) -> Floats:
+    """The strokes at the mark of the eye or of a light."""
     away = unit(mark.place, mark.at)
-    place = np.array(mark.place) - BESIDE * away
-    lines = [joined(LIDS + place), joined(PUPIL + place)]
-    eye = together([*lines, turned(OUTWARD, away, mark.place)] if mark.is_outside else lines)
-    direction = arrow(at, views.position(side, target))
-    return EyeMarks(clipped(eye, side.area), clipped(direction, side.area), clipped(picture, side.area))
+    outward = [turned(OUTWARD, away, mark.place)] if mark.is_outside else []
+    if what == EYE:
+        place = np.array(mark.place) - BESIDE * away
+        return together([joined(LIDS + place), joined(PUPIL + place), *outward])
+    return together(outward or [CROSS + np.tile(mark.place, 2)])
 
 
-def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) -> Floats:
-    """The points at the corners of the picture, (4, 3), at the depth of the target.
-
-    They run around the picture from the upper left corner.
-    """
+def picture_corners(view: View, target: Vector) -> Floats:
+    """The points at the corners of the picture, (4, 3), at the depth of the target, from the upper left."""
     right, down, forward = view.axes
+    right, down = ASPECT * view.half_height(ASPECT) * right, view.half_height(ASPECT) * down
     depth = float(forward @ (np.array(target) - np.array(view.eye)))
-    half = view.half_height(aspect)
-    rays = [forward + half * (aspect * x * right + y * down) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    return np.array(view.eye) + depth * np.array(rays)
+    rays = np.array(
+        [forward + across for across in (-right - down, right - down, right + down, down - right)]
+    )
+    return np.array(view.eye) + depth * rays
 
 
 # The outline of a light's cone as it is seen in one of the three views.
@@ -151,14 +267,12 @@ RIM_SIDES: Final = 72
 
 
 def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Vector) -> Floats:
-    """The strokes of the outline of a light's cone, (n, 4). The light must have a cone.
+    """The strokes of the outline of a light's cone, (n, 4); none for a light without a cone.
 
     `end` is the end of its arrow. A cone of more than 90 degrees opens behind the light. A cone of 180
     degrees contains all points and has no outline.
     """
-    assert light.cone_angle is not None
-    assert light.axis is not None
-    if light.cone_angle == 180:
+    if light.cone_angle is None or light.cone_angle == 180:
         return np.empty((0, 4))
     angle, slant = math.radians(light.cone_angle), math.dist(end, light.position)
     axis, turns = np.array(light.axis), np.linspace(0, 2 * math.pi, RIM_SIDES + 1)
@@ -178,89 +292,8 @@ def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Ve
     return between(np.stack([at, at]), ends)
 
 
-# The marks of a light in the three views: its cross, the arrow to its aim, its cone and its flaps.
-#
-# Paper: Figure 5, "the position and direction of each light. Point source lights would be shown with only a
-# cross at the light position".
-
-CROSS: Final = np.array([(-4, 0, 4, 0), (0, -4, 0, 4)], np.float64)
-"""The cross: strokes relative to the light's position."""
-
-DIRECTION_LENGTH: Final = 40.0
-"""Assumed: the length of the arrow of a light with a direction and no aim, in elements."""
-
-
-class LightMarks(NamedTuple):
-    """The strokes of the cross, the arrow and the cone of a light, each (n, 4); n is 0 if there is none."""
-
-    cross: Floats
-    arrow: Floats
-    cone: Floats
-
-
-class FlapMark(NamedTuple):
-    """The line of an end of a flap. `axis` is 0 to 2, `on` is the flap's switch, `stroke` is (1, 4)."""
-
-    axis: int
-    end: str
-    on: bool
-    stroke: Floats
-
-
-def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
-    """The end of a light's arrow: its aim, or a point in its direction; None without either."""
-    if light.aim is not None or light.axis is None:
-        return light.aim
-    x, y, z = light.position
-    length = DIRECTION_LENGTH / views.scale
-    return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
-
-
-def light_marks(views: OrthographicViews, side: ViewSide, light: Light) -> LightMarks:
-    """The marks of a light in one of the views, clipped by its area, without its flaps.
-
-    A light outside the area has an arrow at the edge in place of its cross.
-    """
-    at = views.position(side, light.position)
-    end = arrow_end(views, light)
-    mark = views.mark(side, light.position, end)
-    shaft = cone = np.empty((0, 4))
-    if end is not None:
-        shaft = arrow(at, views.position(side, end))
-        if light.cone_angle is not None:
-            cone = cone_outline(views, side, light, end)
-    cross = CROSS + np.tile(mark.place, 2)
-    if mark.is_outside:
-        cross = turned(OUTWARD, unit(mark.place, mark.at), mark.place)
-    return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
-
-
-def flap_marks(views: OrthographicViews, side: ViewSide, light: Light) -> tuple[FlapMark, ...]:
-    """The ends of a light's flaps that one of the views shows, as lines across its area.
-
-    A view shows the flaps of its two coordinates. An end at infinity or outside of the area has no line.
-    Paper: Figure 9.
-    """
-    area, marks = side.area, []
-    for axis in (side.right, side.up):
-        flap = (light.flaps.x, light.flaps.y, light.flaps.z)[axis]
-        if flap is None:
-            continue
-        for end, value in (("minimum", flap.minimum), ("maximum", flap.maximum)):
-            if not math.isfinite(value):
-                continue
-            element, line = views.position(side, (value, value, value))
-            if axis == side.right:
-                ends: list[tuple[float, float]] = [(element, area.top), (element, area.bottom)]
-            else:
-                ends = [(area.left, line), (area.right, line)]
-            stroke = clipped(joined(ends), area)
-            if len(stroke):
-                marks.append(FlapMark(axis, end, flap.on, stroke))
-    return tuple(marks)
-
-
-# The numerals beside the lights in the three views, at the places where they hide least.
+# The numerals beside the lights and their aims in the three views, at the places where they hide least. Aims
+# have numerals, too, because they may be closer together than their handles reach.
 
 REACH: Final = 4
 """The elements or lines from the middle of a cross to its ends."""
@@ -272,168 +305,137 @@ RINGS: Final = 2
 RING: Final = 7
 """Assumed: the rings of places around a cross, and the elements or lines between them."""
 
-PLACES: Final = ((1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1))
+PLACES: Final = np.array([(1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1)])
 """The places around a cross, to the right and down, in order of preference."""
 
 
-class Cross(NamedTuple):
-    """A light or its aim in a view: the light's number, the element and line."""
-
-    number: int
-    element: int
-    line: int
-    is_aim: bool = False
-
-    @property
-    def area(self) -> Area:
-        """The area of the cross."""
-        element, line = self.element, self.line
-        return Area(element - REACH, line - REACH, element + REACH, line + REACH)
-
-    def numeral(self, right: int, down: int, ring: int = 0) -> Area:
-        """The area of its numeral at one of the places, nearest in ring 0."""
-        width = CHARACTER * len(str(self.number))
-        gap = (REACH + AWAY if right and down else REACH + 2 * AWAY) + ring * RING
-        left = self.element + (gap if right > 0 else -gap - width + 1 if right < 0 else -(width // 2))
-        line = self.line - CHARACTER_LINES // 2
-        top = line + down * (CHARACTER_LINES // 2 + gap)
-        return Area(left, top, left + width - 1, top + CHARACTER_LINES - 1)
+@cache
+def places_around(digits: int) -> Numbers:
+    """The areas for a numeral of some digits around a cross at (0, 0), (places, 4), the preferred first."""
+    size = np.array([CHARACTER * digits, CHARACTER_LINES])
+    gaps = REACH + np.where(PLACES.all(axis=1), AWAY, 2 * AWAY)[:, np.newaxis]
+    rings = [PLACES * (gaps + RING * ring + size // 2) - size // 2 for ring in range(RINGS)]
+    return np.concatenate([np.concatenate(rings), np.concatenate(rings) + size - 1], axis=1)
 
 
-class Numeral(NamedTuple):
-    """A cross, and the area of its numeral."""
+@lru_cache(maxsize=64)
+def numerals(
+    crosses: tuple[tuple[int, int, int], ...], area: Area, taken: tuple[Area, ...]
+) -> tuple[Area, ...]:
+    """The areas within an area of the numerals of crosses: of their numbers, elements and lines.
 
-    cross: Cross
-    area: Area
-
-
-def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> list[Numeral]:
-    """The numerals of the crosses within an area, in order; `taken` areas stay free if possible."""
-    seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
-    filled = [*taken, *[cross.area for cross in seen]]
+    The crosses and the `taken` areas stay free if possible.
+    """
+    occupied = [*taken, *(cross_area(element, line) for _, element, line in crosses)]
     placed = []
-    for cross in seen:
-        places = (cross.numeral(*place, ring) for ring, place in product(range(RINGS), PLACES))
-        inside = [place for place in places if area.covers(place)]
-        if inside:
-            # The first of the places that overlap the fewest areas.
-            best = min(inside, key=lambda place: sum(map(place.overlaps, filled)))
-            placed.append(Numeral(cross, best))
-            filled.append(best)
-    return placed
+    for number, element, line in crosses:
+        places = places_around(len(str(number))) + np.array([element, line, element, line])
+        others, starts, ends = np.array(occupied), places[:, :2], places[:, 2:]
+        overlaps = (starts[:, None] <= others[:, 2:]) & (ends[:, None] >= others[:, :2])
+        counts = overlaps.all(axis=2).sum(axis=1)
+        is_outside = (starts < area[:2]).any(axis=1) | (ends > area[2:]).any(axis=1)
+        # The first of the places that overlap the fewest areas.
+        best = np.where(is_outside, len(others) + 1, counts).argmin()
+        placed.append(Area(*places[best].tolist()))
+        occupied.append(placed[-1])
+    return tuple(placed)
 
 
-class SideItems:
-    """The items of one of the views. The items that are not of the chosen light or eye are cached."""
-
-    def __init__(self, side: ViewSide) -> None:
-        self._side = side
-        self._eye: Cached[EyeMarks] = Cached()
-        self._others: Cached[tuple[list[Item], list[Numeral]]] = Cached()
-        self.numerals: Sequence[Numeral] = ()
-        """The numerals of the last items."""
-
-    def items(
-        self, views: OrthographicViews, scene: Scene, target: Vector, chosen: str, moved: Vector | None
-    ) -> list[Item]:
-        """The items of a scene, from the lowest to the highest.
-
-        `target` is the view's target, `chosen` the name of a light, or empty for the eye. Lines run across
-        the views through `moved`, a point that is being placed.
-        """
-        side, view = self._side, scene.view
-        lights = scene.lights_in_world
-        ours = [light for light in lights if light.name == chosen]
-        others = [light for light in lights if light.name != chosen]
-        title = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
-        label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
-        eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view)
-        number = {light.name: place for place, light in enumerate(lights, start=1)}
-
-        def numerals_of(lights: Sequence[Light], taken: Sequence[Area]) -> list[Numeral]:
-            crosses = [cross for each in lights for cross in crosses_of(views, side, number[each.name], each)]
-            return numerals(crosses, side.area, [*taken, label.area, area_of(eye.eye.reshape(-1, 2))])
-
-        def below() -> tuple[list[Item], list[Numeral]]:
-            return still_items(views, side, eye, others, bool(ours)), numerals_of(others, [])
-
-        items, placed = self._others.of(below, views, eye, bool(ours), *others)
-        above = [item for light in ours for item in chosen_items(views, side, light)]
-        # The numerals of the chosen light make way for the others, which stay in place.
-        own = numerals_of(ours, [each for cross, area in placed for each in (area, cross.area)])
-        self.numerals = [*placed, *own]
-        words = {number[light.name]: WHITE if light.on else GRAY for light in others}
-        return [
-            label,
-            *([] if moved is None else lines_across(views, side, moved)),
-            *items,
-            *(above or drawn_items({YELLOW: [eye.direction, eye.eye]})),
-            *[
-                text(str(cross.number), area.left, area.top, words.get(cross.number, YELLOW))
-                for cross, area in self.numerals
-            ],
-        ]
+def cross_area(element: int, line: int) -> Area:
+    """The area of a cross."""
+    return Area(element, line, element, line).inset(-REACH)
 
 
-def still_items(
+# The items and the handles of a view.
+
+
+def marks_in(
+    scene: Scene,
     views: OrthographicViews,
     side: ViewSide,
-    eye: EyeMarks,
-    lights: Sequence[Light],
-    has_eye: bool,
-) -> list[Item]:
-    """The edges of the picture, and the lights and the eye that are not chosen."""
-    layers: dict[int, list[Floats]] = {
-        SLATE: [eye.picture],
-        GRAY: [],
-        LIGHT_GRAY: [],
-        BLUE: [eye.direction, eye.eye] if has_eye else [],
-        WHITE: [],
-    }
-    for light in lights:
-        marks = light_marks(views, side, light)
-        layers[GRAY].append(marks.cone)
-        layers[LIGHT_GRAY if light.on else GRAY].append(marks.arrow)
-        layers[WHITE if light.on else GRAY].append(marks.cross)
-    return drawn_items(layers)
+    chosen: str,
+    hold: Callable[[MarkedPoint], object],
+) -> tuple[list[Item], list[Handle]]:
+    """The items of a view from the lowest to the highest, and its handles, which call `hold`.
 
-
-def chosen_items(views: OrthographicViews, side: ViewSide, light: Light) -> list[Item]:
-    """The chosen light, with its flaps."""
-    layers: dict[int, list[Floats]] = {GRAY: [], YELLOW: []}
-    for mark in flap_marks(views, side, light):
-        layers[YELLOW if mark.on else GRAY].append(mark.stroke)
-    layers[YELLOW] += light_marks(views, side, light)
-    return drawn_items(layers)
-
-
-def crosses_of(views: OrthographicViews, side: ViewSide, number: int, light: Light) -> list[Cross]:
-    """The mark of a light in one of the views, and the place of its aim.
-
-    Aims have numerals, too, because they may be closer together than their handles reach.
+    `chosen` is the name of a light, or empty for the eye. Its numerals make way for the others, which stay in
+    place. Of handles at one place, the last is grabbed.
     """
-    mark = views.mark(side, light.position, arrow_end(views, light)).place
-    places = [mark] if light.aim is None else [mark, views.position(side, light.aim)]
-    return [
-        Cross(number, round(element), round(line), is_aim)
-        for is_aim, (element, line) in zip((False, True), places, strict=False)
-    ]
+    # As on an engineering drawing, the name of a view is below it.
+    name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
+    title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, GRAY)
+    others, ours = points_in(scene, views, side, chosen)
+    edges = edge_items(views, side, scene.view, target_of(scene))
+    items = [title, *edges, *point_items(views, others, False), *point_items(views, ours, True)]
+    eyes = [sign_of(EYE, each.mark) for each in (*others, *ours) if each.movable.what == EYE]
+    taken = [title.area, *(area_of(eye.reshape(-1, 2), limit=side.area) for eye in eyes)]
+    handles = []
+    for points in (others, ours):
+        shown = [each for each in points if each.movable.what in (LIGHT, AIM) and side.area.has(*each.pixel)]
+        areas = numerals(tuple((each.number, *each.pixel) for each in shown), side.area, tuple(taken))
+        for each, area in zip(shown, areas, strict=True):
+            ink, *_ = inks_of(each, points is ours)
+            items.append(text(str(each.number), area.left, area.top, ink))
+            taken += [cross_area(*each.pixel), area]
+        signs = dict(zip(shown, areas, strict=True))
+        for each in points:
+            label, sign = each.movable.message(scene, each.point, views), signs.get(each, NOWHERE)
+            for place in places_of_handles(each):
+                handles.append(Handle(each.movable, *place, label, sign, hold=partial(hold, each)))
+    return items, handles
 
 
-def lines_across(views: OrthographicViews, side: ViewSide, point: Vector) -> list[Item]:
-    """Thin lines through a point, which continue in the views beside and above."""
-    area = side.area
-    element, line = (round(each) for each in views.position(side, point))
-    upright, level = area._replace(left=element, right=element), area._replace(top=line, bottom=line)
-    return [filled(each, SLATE) for each in (upright, level) if area.covers(each)]
+def places_of_handles(point: MarkedPoint) -> list[tuple[int, int]]:
+    """The places where a point can be grabbed: at its mark in the view, or all along the line of a flap."""
+    if point.movable.what != FLAP:
+        return [point.pixel] if point.movable.side.area.has(*point.pixel) else []
+    left, top, right, bottom = point.line
+    along = range(BETWEEN // 2, max(right - left, bottom - top), BETWEEN)
+    return [(left + step, top) if top == bottom else (left, top + step) for step in along]
 
 
-def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:
-    """The items of clipped strokes, by their words."""
-    items = []
-    for word, parts in layers.items():
-        strokes = together(parts)
-        if len(strokes):
-            stream = instructions.write_segments(rounded(strokes), word).tobytes()
-            items.append(Item(area_of(strokes.reshape(-1, 2)), stream))
-    return items
+def inks_of(point: MarkedPoint, is_chosen: bool) -> tuple[int, int, int]:
+    """The words of the sign, the arrow and the cone of the eye or a light."""
+    if is_chosen:
+        return YELLOW, YELLOW, YELLOW
+    if point.light is None:
+        return BLUE, BLUE, BLUE
+    return (WHITE, LIGHT_GRAY, GRAY) if point.light.on else (GRAY, GRAY, GRAY)
+
+
+@lru_cache(maxsize=64)
+def point_items(
+    views: OrthographicViews, points: tuple[MarkedPoint, ...], are_chosen: bool
+) -> Sequence[Item]:
+    """The items of the eye, of lights and of flaps; during a drag, most points stay the same."""
+    layers: dict[int, list[Floats]] = {word: [] for word in (GRAY, LIGHT_GRAY, BLUE, WHITE, YELLOW)}
+    for each in points:
+        what, side, light = each.movable.what, each.movable.side, each.light
+        sign, shaft, cone = inks_of(each, are_chosen)
+        if what == FLAP:
+            is_on = light is not None and getattr(light.flaps, each.movable.axis).on
+            layers[YELLOW if is_on else GRAY].append(np.array([each.line], np.float64))
+        elif what in (EYE, LIGHT):
+            layers[sign].append(sign_of(what, each.mark))
+            if each.end is not None:
+                layers[shaft].append(arrow(each.mark.at, views.position(side, each.end)))
+                if light is not None:
+                    layers[cone].append(cone_outline(views, side, light, each.end))
+    return tuple(item for word, parts in layers.items() for item in drawn_item(parts, word, side))
+
+
+@lru_cache(maxsize=64)
+def edge_items(views: OrthographicViews, side: ViewSide, view: View, target: Vector) -> Sequence[Item]:
+    """The items of the picture's edges at the depth of the target, and of the rays to its corners."""
+    corners = views.positions(side, picture_corners(view, target))
+    rays = between(np.broadcast_to(views.position(side, view.eye), (4, 2)), corners)
+    return drawn_item([rays, joined([*corners, corners[0]])], SLATE, side)
+
+
+def drawn_item(parts: Sequence[Floats], word: int, side: ViewSide) -> Sequence[Item]:
+    """The item of all strokes of one word, clipped at the area of a view; none if there are no strokes."""
+    strokes = clipped(together(parts), side.area)
+    if not len(strokes):
+        return ()
+    stream = instructions.write_segments(rounded(strokes), word).tobytes()
+    return (Item(area_of(strokes.reshape(-1, 2)), stream),)

@@ -26,7 +26,6 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
 from autocolor.screens.light_and_view.orthographic_views import (
-    LINES_BETWEEN,
     SIDES,
     OrthographicViews,
     ViewSide,
@@ -72,11 +71,11 @@ Of an object that fills its view, no point is a fiftieth of a pixel off.
 
 def view_of_side(side: ViewSide, views: OrthographicViews) -> View:
     """The view of an eye far away, whose picture of the size of the area shows one of the three views."""
-    area = side.area
-    distance = focal_length(area.height, area.width, FAR_FIELD) / views.scale
-    x, y, z = (center + distance * step for center, step in zip(views.center, side.toward, strict=True))
-    back, left, down = side.toward
-    return View((x, y, z), direction=(-back, -left, -down), field_of_view=FAR_FIELD)
+    distance = focal_length(side.area.height, side.area.width, FAR_FIELD) / views.scale
+    toward = np.array(side.toward)
+    x, y, z = (views.center + distance * toward).tolist()
+    back, left, down = (0.0 - toward).tolist()
+    return View((x, y, z), direction=(back, left, down), field_of_view=FAR_FIELD)
 
 
 def depth_picture(mesh: Mesh, view: View, lines: int, elements: int, numbers: Indices) -> DepthPicture:
@@ -87,16 +86,14 @@ def depth_picture(mesh: Mesh, view: View, lines: int, elements: int, numbers: In
     projected = projection(mesh, view, lines, elements)
     scale = depth_scale(projected)
     of_polygons = numbers.take(mesh.part_numbers.take(projected.polygon_numbers))
-    keys = np.zeros(lines * elements, np.int64)
-    for on_stage in (False, True):
-        layer = np.zeros_like(keys)
-        depth_test(layer, projected, scale, np.flatnonzero((of_polygons == STAGE) == on_stage))
-        keys = np.where(keys > 0, keys, layer)
-    depths, parts = np.full(len(keys), np.inf), np.full(len(keys), NO_PART)
+    keys, stage = np.zeros((2, lines * elements), np.int64)
+    depth_test(keys, projected, scale, np.flatnonzero(of_polygons != STAGE))
+    depth_test(stage, projected, scale, np.flatnonzero(of_polygons == STAGE))
+    keys = np.where(keys > 0, keys, stage)
     seen = np.flatnonzero(keys)
-    polygons = polygons_of_numbers(projected, keys[seen] & (scale.number_limit - 1))
+    depths, parts = np.full(len(keys), np.inf), np.full(len(keys), NO_PART)
     depths[seen] = scale.factor * projected.unit / (keys[seen] // scale.number_limit)
-    parts[seen] = of_polygons.take(polygons)
+    parts[seen] = of_polygons.take(polygons_of_numbers(projected, keys[seen] & (scale.number_limit - 1)))
     return DepthPicture(view, depths.reshape(lines, elements), parts.reshape(lines, elements))
 
 
@@ -139,8 +136,7 @@ def outlines_and_borders(picture: DepthPicture) -> tuple[Booleans, Booleans]:
     Both are (lines, elements).
     """
     is_seen = picture.parts != NO_PART
-    pixel = picture.depths.min() / picture.focal if is_seen.any() else 1.0
-    depths = picture.depths / pixel
+    depths = picture.depths * (picture.focal / picture.depths.min() if is_seen.any() else 1.0)
     # The stage lies behind the object, and has no lines but its outline.
     depths = np.where(picture.parts == STAGE, 2 * depths.max(where=is_seen, initial=0.0), depths)
     outlines, borders = np.zeros((2, *depths.shape), np.bool_)
@@ -191,13 +187,13 @@ def crease_edges(mesh: Mesh, numbers: Indices) -> Indices:
     `numbers` are as in `depth_picture`.
     """
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
-    places = places_of_corners(coordinate_rows, node_rows)
     normals = np.empty((3, node_rows.shape[1]))
     for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
         normals[:, chunk] = polygon_normals(np.take(coordinate_rows, node_rows[:, chunk], axis=1))
     # Polygons without area have no creases.
     are_drawn = (normals != 0).any(axis=0) & (numbers[mesh.part_numbers] != STAGE)
     least = np.cos(np.radians(DRAWN_CREASE)) - 1e-9
+    places = places_of_corners(coordinate_rows, node_rows)
     creases = [np.empty((2, 0), np.intp)]
     for one, other in corners_at_shared_edges(places, mesh.part_numbers):
         cosines = dot(np.take(normals, one >> 2, axis=1), np.take(normals, other >> 2, axis=1))
@@ -210,14 +206,14 @@ def crease_edges(mesh: Mesh, numbers: Indices) -> Indices:
 def crease_pixels(picture: DepthPicture, coordinates: Floats, creases: Indices) -> Booleans:
     """The pixels at which a depth picture sees creases, (lines, elements); `coordinates` are (nodes, 3)."""
     view, depths, focal = picture.view, picture.depths, picture.focal
+    size = np.array(depths.shape[::-1])[:, None]
     ends = [rotated(view.axes, np.take(coordinates.T, nodes, axis=1), view.eye) for nodes in creases]
     # Leave out the creases that pass the eye.
-    before_eye = np.flatnonzero((ends[0][2] > 0) & (ends[1][2] > 0))
-    size = np.array(depths.shape[::-1])[:, None]
-    start, end = (np.take(each, before_eye, axis=1) for each in ends)
+    before_eye = (ends[0][2] > 0) & (ends[1][2] > 0)
     # Screen x and y, and inverse depth, change along a crease in proportion to each other.
     start, end = (
-        np.concatenate([each[:2] * (focal / each[2]) + size / 2, 1 / each[2:]]) for each in (start, end)
+        np.concatenate([each[:2] * (focal / each[2]) + size / 2, 1 / each[2:]])
+        for each in (np.compress(before_eye, each, axis=1) for each in ends)
     )
     step = end - start
     # Find the shares of each crease at which it enters and leaves the picture.
@@ -225,7 +221,7 @@ def crease_pixels(picture: DepthPicture, coordinates: Floats, creases: Indices) 
         borders = -start[:2] / step[:2], (size - start[:2]) / step[:2]
     enters = np.fmin(*borders).max(axis=0, initial=0.0)
     leaves = np.fmax(*borders).min(axis=0, initial=1.0)
-    inside = np.flatnonzero(enters < leaves)
+    inside = enters < leaves
     start, step, enters, leaves = start[:, inside], step[:, inside], enters[inside], leaves[inside]
 
     # Place points along each crease, at most a pixel apart, and compare their depths with the picture's.
@@ -235,9 +231,8 @@ def crease_pixels(picture: DepthPicture, coordinates: Floats, creases: Indices) 
     x, y, inverse_depth = np.repeat(start, count, axis=1) + along * np.repeat(step, count, axis=1)
     places = y.astype(np.intp).clip(0, size[1] - 1) * size[0] + x.astype(np.intp).clip(0, size[0] - 1)
     farthest = around(np.maximum, depths, -np.inf).ravel().take(places)
-    is_seen = 1 / inverse_depth <= farthest * (1 + BEHIND / focal)
     pixels = np.zeros(depths.shape, np.bool_)
-    pixels.ravel()[places[is_seen]] = True
+    pixels.put(places[1 / inverse_depth <= farthest * (1 + BEHIND / focal)], True)
     pixels &= picture.parts != NO_PART
     return pixels
 
@@ -270,63 +265,53 @@ def line_words(picture: DepthPicture, mesh: Mesh, creases: Indices) -> Words:
     return words
 
 
-class SideLines(NamedTuple):
-    """The words of the lines in one of the three views, (lines, elements) of its area."""
+def moved(words: Words, side: ViewSide, before: OrthographicViews, views: OrthographicViews) -> Words:
+    """The words of a view moved to other views, whose lines are not found yet.
 
-    views: OrthographicViews
-    words: Words
-
-    def moved(self, side: ViewSide, views: OrthographicViews) -> Words:
-        """The words moved to other views, whose lines are not found yet; pixels are left out or repeated."""
-        if views is self.views:
-            return self.words
-        places = []
-        for count, axis, sign in zip(self.words.shape, (side.up, side.right), (-1, 1), strict=True):
-            shift = sign * (views.center[axis] - self.views.center[axis]) * self.views.scale
-            from_middle = np.arange(count) - (count - 1) / 2
-            place = from_middle * (self.views.scale / views.scale) + shift + (count - 1) / 2
-            # The pixels from beyond the area have the last place.
-            places.append(np.rint(place.clip(-1, count)).astype(np.intp) % (count + 1))
-        beyond = np.pad(self.words, (0, 1), constant_values=NIGHT)
-        words: Words = beyond.take(places[0], axis=0).take(places[1], axis=1)
+    Pixels are left out or repeated.
+    """
+    if before == views:
         return words
+    shifted = np.pad(words, (0, 1), constant_values=NIGHT)
+    for direction, (count, axis, sign) in enumerate(
+        zip(words.shape, (side.up, side.right), (-1, 1), strict=True)
+    ):
+        middle, shift = (count - 1) / 2, sign * (views.center[axis] - before.center[axis]) * before.scale
+        place = (np.arange(count) - middle) * (before.scale / views.scale) + shift + middle
+        # The pixels from beyond the area have the last place.
+        shifted = shifted.take(np.rint(place.clip(-1, count)).astype(np.intp) % (count + 1), axis=direction)
+    return shifted
 
 
 class ObjectLines:
     """The lines of the object of a scene; what did not change is not computed again."""
 
     def __init__(self) -> None:
-        self._drawn: Cached[tuple[Indices, Indices]] = Cached()
-        self._sides: dict[str, SideLines] = {}
+        self._object: Cached[tuple[Indices, Indices]] = Cached()
+        self._found: dict[ViewSide, tuple[OrthographicViews, Words]] = {}
         self._page: Cached[Words] = Cached()
-        self._seen: Cached[Words] = Cached()
 
     def page(self, scene: Scene, views: OrthographicViews) -> Words:
         """The words of the whole screen, read-only, with the lines that are found so far."""
         self._object_of(scene)
-        found = [self._sides.get(side.name) for side in SIDES]
 
         def page() -> Words:
             words = np.full((HEIGHT, WIDTH), NIGHT, np.uint16)
-            for area in LINES_BETWEEN:
-                _part(words, area)[:] = SLATE
-            for side, lines in zip(SIDES, found, strict=True):
-                if lines is not None:
-                    _part(words, side.area)[:] = lines.moved(side, views)
+            for side, (before, lines) in self._found.items():
+                left, top, right, bottom = side.area
+                words[top : bottom + 1, left : right + 1] = moved(lines, side, before, views)
             return read_only(words)
 
-        return self._page.of(page, views, *found)
+        return self._page.of(page, views, *self._found.values())
 
     def find_next(self, scene: Scene, views: OrthographicViews) -> bool:
         """Find the lines of the next of the three views; returns False if all are found."""
         numbers, creases = self._object_of(scene)
         for side in SIDES:
-            found, area = self._sides.get(side.name), side.area
-            if found is None or found.views is not views:
-                view = view_of_side(side, views)
+            if side not in self._found or self._found[side][0] != views:
+                view, area = view_of_side(side, views), side.area
                 picture = depth_picture(scene.mesh, view, area.height, area.width, numbers)
-                words = line_words(picture, scene.mesh, creases)
-                self._sides[side.name] = SideLines(views, words)
+                self._found[side] = views, line_words(picture, scene.mesh, creases)
                 return True
         return False
 
@@ -336,29 +321,19 @@ class ObjectLines:
         The lines of a coarser picture are as coarse as the picture.
         """
         numbers, creases = self._object_of(scene)
-
-        def words() -> Words:
-            lines, elements = min(points.lines, area.height), min(points.elements, area.width)
-            picture = depth_picture_of_points(points, lines, elements, numbers)
-            small = line_words(picture, scene.mesh, creases)
-            return sampled(small, area.height, area.width)
-
-        return self._seen.of(words, creases, points)
+        lines, elements = min(points.lines, area.height), min(points.elements, area.width)
+        picture = depth_picture_of_points(points, lines, elements, numbers)
+        return sampled(line_words(picture, scene.mesh, creases), area.height, area.width)
 
     def _object_of(self, scene: Scene) -> tuple[Indices, Indices]:
         """The numbers of the parts, and the creases. If all parts are stage, they are the object."""
         mesh = scene.mesh
 
         def compute() -> tuple[Indices, Indices]:
-            self._sides = {}
+            self._found = {}
             is_stage = np.array([part.stage for part in scene.parts], np.bool_)
             is_stage &= not is_stage[list(mesh.parts_in_use)].all()
             numbers = np.where(is_stage, STAGE, np.arange(len(is_stage)))
             return numbers, crease_edges(mesh, numbers)
 
-        return self._drawn.of(compute, mesh, scene.parts)
-
-
-def _part(words: Words, area: Area) -> Words:
-    """The words in an area."""
-    return words[area.top : area.bottom + 1, area.left : area.right + 1]
+        return self._object.of(compute, mesh, scene.parts)

@@ -8,50 +8,29 @@ point has the same column or line in two of them.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 
 from autocolor.arrays import Floats, bounds_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
-from autocolor.scene.defaults import object_bounds
+from autocolor.scene.orbit import target_of
 from autocolor.scene.scene import Scene
-from autocolor.screens.picture.picture_edits import target_of
 from autocolor.widgets.items import Area
+from autocolor.widgets.menu import WORK
 
-# The areas of the views on the light and view screen.
+# The areas of the views: the quarters of the work area.
+#
+# Assumed: as on an engineering drawing, the top view is above the front view, and the side view beside it.
+# The fourth quarter is for DISPLAY VIEW.
 
-PICTURE_ASPECT: Final = 640 / 480
-"""The width of a picture over its height. Paper: Figure 11, 640 x 480."""
+_HIGH: Final = (WORK.height - 8) // 2
+_FOOT: Final = WORK.top + _HIGH + 8
 
+PICTURE_AREA: Final = Area(256, WORK.top, 503, WORK.top + _HIGH - 1)
 
-TOP_AREA: Final = Area(0, 16, 247, 235)
-PICTURE_AREA: Final = Area(256, 16, 503, 235)
-FRONT_AREA: Final = Area(0, 244, 247, 463)
-SIDE_AREA: Final = Area(256, 244, 503, 463)
-"""The quarters of a work area of 504 x 464, on a grid of 8.
-
-Assumed: as on an engineering drawing, the top view is above the front view, and the side view beside it. The
-fourth quarter is for DISPLAY VIEW. Eight lines are left free at the bottom.
-"""
-
-LINES_BETWEEN: Final = (Area(251, 16, 252, 463), Area(0, 239, 503, 240))
+LINES_BETWEEN: Final = (WORK._replace(left=251, right=252), Area(0, _FOOT - 5, WORK.right, _FOOT - 4))
 """The lines between the quarters."""
-
-
-def area_of_picture(area: Area = PICTURE_AREA, aspect: float = PICTURE_ASPECT) -> Area:
-    """The largest area of the shape of a picture in the middle of an area.
-
-    >>> area_of_picture(Area(256, 16, 503, 235))
-    Area(left=256, top=33, right=503, bottom=218)
-    """
-    width = min(area.width, round(area.height * aspect))
-    height = min(area.height, round(area.width / aspect))
-    left, top = area.left + (area.width - width) // 2, area.top + (area.height - height) // 2
-    return Area(left, top, left + width - 1, top + height - 1)
-
 
 FILLED: Final = 0.84
 """Assumed: the fraction of an area that the coordinates fill, with 16 elements or more left on all sides."""
@@ -59,18 +38,8 @@ FILLED: Final = 0.84
 EDGE: Final = 8
 """Assumed: elements or lines between the edge of an area and the marks of points that are outside."""
 
-POINT: Final = 1e-9
-"""Assumed: points closer than this fraction of the largest coordinate are the same point."""
-
 FINEST: Final = 1e-11
 """Assumed: the least size of a pixel, as a fraction of the largest coordinate; 64 bits hold a hundredth."""
-
-COARSEST: Final = 1e30
-"""Assumed: the largest size of a pixel, in units: the size of the largest coordinate."""
-
-SMALLEST: Final = 1e-30
-"""Assumed: the least size of a pixel, in units."""
-
 
 AXES: Final = "xyz"
 """The names of the axes."""
@@ -89,9 +58,9 @@ class ViewSide(NamedTuple):
     area: Area
 
 
-TOP: Final = ViewSide("top", 0, 1, (0.0, 0.0, 1.0), TOP_AREA)
-FRONT: Final = ViewSide("front", 0, 2, (0.0, -1.0, 0.0), FRONT_AREA)
-SIDE: Final = ViewSide("side", 1, 2, (1.0, 0.0, 0.0), SIDE_AREA)
+TOP: Final = ViewSide("top", 0, 1, (0.0, 0.0, 1.0), PICTURE_AREA._replace(left=0, right=247))
+FRONT: Final = ViewSide("front", 0, 2, (0.0, -1.0, 0.0), Area(0, _FOOT, 247, _FOOT + _HIGH - 1))
+SIDE: Final = ViewSide("side", 1, 2, (1.0, 0.0, 0.0), Area(256, _FOOT, 503, _FOOT + _HIGH - 1))
 
 SIDES: Final = (TOP, FRONT, SIDE)
 """The three views. Assumed: x to the right and y up, x to the right and z up, y to the right and z up."""
@@ -119,36 +88,39 @@ class PointMark(NamedTuple):
 
     def dragged(self, element: int, line: int) -> tuple[int, int]:
         """Where the point goes if the mark goes to a pixel: as many times as far as the point is farther."""
-        to = (element, line)
-        across, down = (
-            round(at + self.ratio * (now - place))
-            for at, place, now in zip(self.at, self.place, to, strict=True)
-        )
-        return across, down
+        (at_element, at_line), (from_element, from_line) = self.at, self.place
+        across, down = element - from_element, line - from_line
+        return round(at_element + self.ratio * across), round(at_line + self.ratio * down)
 
 
-@dataclass(frozen=True)
-class OrthographicViews:
+Coordinate = TypeVar("Coordinate", float, Floats)
+
+
+class OrthographicViews(NamedTuple):
     """The coordinates in the middle of every area, and the scale of all views, in elements for each unit."""
 
     center: Vector
     scale: float
 
-    def positions(self, side: ViewSide, points: Floats) -> Floats:
-        """The element and line of each point of (n, 3) in one of the views, (n, 2), also outside its area."""
-        element, line = side.area.middle
-        positions = np.empty((len(points), 2))
-        positions[:, 0] = element + (points[:, side.right] - self.center[side.right]) * self.scale
-        positions[:, 1] = line - (points[:, side.up] - self.center[side.up]) * self.scale
-        return positions
-
-    def position(self, side: ViewSide, point: Vector) -> tuple[float, float]:
-        """The element and line of one point."""
+    def position(
+        self, side: ViewSide, point: tuple[Coordinate, Coordinate, Coordinate]
+    ) -> tuple[Coordinate, Coordinate]:
+        """The element and line of a point in one of the views, also outside its area."""
         element, line = side.area.middle
         return (
             element + (point[side.right] - self.center[side.right]) * self.scale,
             line - (point[side.up] - self.center[side.up]) * self.scale,
         )
+
+    def positions(self, side: ViewSide, points: Floats) -> Floats:
+        """The element and line of each point of (n, 3), (n, 2)."""
+        x, y, z = points.T
+        return np.stack(self.position(side, (x, y, z)), axis=1)
+
+    def lines_through(self, side: ViewSide, point: Vector) -> tuple[Area, Area]:
+        """The upright and the level line across a view through a point, which may be outside."""
+        element, line = (round(place) for place in self.position(side, point))
+        return side.area._replace(left=element, right=element), side.area._replace(top=line, bottom=line)
 
     def mark(self, side: ViewSide, point: Vector, end: Vector | None) -> PointMark:
         """The mark of a point: at its position, or at the edge of the area for a point outside.
@@ -179,75 +151,60 @@ class OrthographicViews:
         The third coordinate stays exactly, and so does a coordinate already at this element or line.
         Assumed: the coordinates are rounded to decimals that place them within a tenth of a pixel.
         """
-        middle = side.area.middle
-        present = self.position(side, point)
-        moved = list(point)
-        for axis, sign, picked, center, now in (
-            (side.right, 1.0, element, middle[0], present[0]),
-            (side.up, -1.0, line, middle[1], present[1]),
+        moved, present, middle = list(point), self.position(side, point), side.area.middle
+        for axis, pixel, now, center, sign in (
+            (side.right, element, present[0], middle[0], 1),
+            (side.up, line, present[1], middle[1], -1),
         ):
-            if abs(now - picked) > 0.5:
-                moved[axis] = self.rounded(self.center[axis] + sign * (picked - center) / self.scale)
-        return (moved[0], moved[1], moved[2])
+            if abs(now - pixel) > 0.5:
+                moved[axis] = self.rounded(self.center[axis] + sign * (pixel - center) / self.scale)
+        return moved[0], moved[1], moved[2]
 
     def rounded(self, coordinate: float) -> float:
-        """The coordinate, bounded and rounded to decimals that tell tenths of a pixel; 0 has no sign."""
-        rounded = round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
-        return max(-LARGEST_COORDINATE, min(LARGEST_COORDINATE, rounded))
+        """The coordinate, rounded to decimals that tell tenths of a pixel; 0 has no sign."""
+        return round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
 
     def zoomed(self, ratio: float) -> OrthographicViews:
         """The views with a scale that is `ratio` times as large, nearer above 1, around the same center.
 
-        Paper: Figure 5, RESCALE moves closer or farther away.
+        A pixel is not larger than the largest coordinate, nor too small for coordinates to tell it from the
+        next. Paper: Figure 5, RESCALE moves closer or farther away.
         """
-        return OrthographicViews(self.center, _scale_within(self.scale * ratio, self.center))
+        finest = max(1 / LARGEST_COORDINATE, FINEST * max(map(abs, self.center)))
+        return OrthographicViews(
+            self.center, min(max(self.scale * ratio, 1 / LARGEST_COORDINATE), 1 / finest)
+        )
 
-    def centered(self, point: Sequence[float]) -> OrthographicViews:
-        """The views of the same scale with a point in the middle of every area."""
-        center = (float(point[0]), float(point[1]), float(point[2]))
-        return replace(self, center=center, scale=_scale_within(self.scale, center))
+    def panned(self, side: ViewSide, elements: float, lines: float) -> OrthographicViews:
+        """The views of the same scale, moved so that every point of a view moves by elements and lines."""
+        center = list(self.center)
+        center[side.right] -= elements / self.scale
+        center[side.up] += lines / self.scale
+        return OrthographicViews((center[0], center[1], center[2]), self.scale).zoomed(1)
 
 
 def fitted_views(points: Floats) -> OrthographicViews:
     """The views that show all points, (n, 3), with one scale, and space left on all sides.
 
-    The points are those of the object, or of a part, and of the eye, the lights and their aims. A single
-    point has a unit of space around it. Paper: Figure 5, RESCALE rescales the views "based on the maximum
-    coordinate values to leave a reasonable amount of space on all sides".
+    A single point has a unit of space around it. Paper: Figure 5, RESCALE rescales the views "based on the
+    maximum coordinate values to leave a reasonable amount of space on all sides".
     """
     low, high = bounds_of(points)
-    center, extent = low + (high - low) / 2, high - low
-    largest = float(np.abs([low, high]).max())
-    if float(extent.max()) <= POINT * largest or not extent.any():
-        extent = np.full(3, max(1.0, 1e3 * POINT * largest))
-    scales = [
-        FILLED * (room - 1) / float(extent[axis])
-        for side in SIDES
-        for axis, room in ((side.right, side.area.width), (side.up, side.area.height))
-        if extent[axis] > 0
-    ]
-    middle = (float(center[0]), float(center[1]), float(center[2]))
-    return OrthographicViews(middle, _scale_within(min(scales), middle))
-
-
-def _scale_within(scale: float, center: Vector) -> float:
-    """The scale within bounds: pixels are not too large, nor too small for coordinates to tell apart."""
-    finest = max(SMALLEST, FINEST * max(map(abs, center)))
-    return min(max(scale, 1 / COARSEST), 1 / finest)
-
-
-# The points of a scene that the three views show when they are fitted to the whole scene.
+    x, y, z = (low + (high - low) / 2).tolist()
+    extent = high - low if (high > low).any() else np.ones(3)
+    # The top view has the least room for y.
+    room = np.array([TOP.area.width, TOP.area.height, TOP.area.height]) - 1
+    with np.errstate(divide="ignore"):
+        scale = float((FILLED * room / extent).min())
+    return OrthographicViews((x, y, z), 1.0).zoomed(scale)
 
 
 def shown_points(scene: Scene) -> Floats:
-    """The ends of the object's bounding box, the eye and its target, and the lights and aims, (n, 3).
+    """The points to show of a whole scene, (n, 3): object, eye and target, lights and their aims.
 
     Lights that are switched off count, too. A stage, such as a floor, does not: it would make the object
     small, and is drawn as far as it is within the views.
     """
-    points = [*object_bounds(scene.mesh, scene.parts), np.array(scene.view.eye), np.array(target_of(scene))]
-    for light in scene.lights_in_world:
-        points.append(np.array(light.position))
-        if light.aim is not None:
-            points.append(np.array(light.aim))
-    return np.array(points)
+    lights = scene.lights_in_world
+    places = [light.position for light in lights] + [light.aim for light in lights if light.aim is not None]
+    return np.array([*scene.object_bounds, scene.view.eye, target_of(scene), *places])

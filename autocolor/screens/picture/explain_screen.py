@@ -27,9 +27,10 @@ from autocolor.widgets.items import (
     outline,
     text,
 )
+from autocolor.widgets.menu import WORK
 
 LEFT: Final = 4
-TOP: Final = 8
+TOP: Final = WORK.top + 2
 STEP: Final = 13
 """The upper left of the rows, and the lines from row to row."""
 

@@ -19,13 +19,11 @@ from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import HISTORY, Session
 from autocolor.screens.steps import redo, undo
-from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, Area, Item, fitted
+from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, Area
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import MARGIN, ROW_LINES, Button, Gap, Pair, Widget
 
-LEFT: Final = 8
-TOP: Final = WORK.top + 8
-WIDTH: Final = 248
+LIST: Final = WORK.inset(8)._replace(right=255)
 """The list, at the left of the picture."""
 
 MOST_ROWS: Final = 26
@@ -34,7 +32,7 @@ MOST_ROWS: Final = 26
 DIGITS: Final = 3
 """Characters of a step's number; longer numbers move their line to the right."""
 
-MOST_LETTERS: Final = (WIDTH - 2 * MARGIN) // CHARACTER - DIGITS - 2
+MOST_LETTERS: Final = (LIST.width - 2 * MARGIN) // CHARACTER - DIGITS - 2
 
 BEGIN: Final = "as the session began"
 AGAIN: Final = "opened again"
@@ -55,7 +53,7 @@ class HistoryScreen(OverPicture):
         super().__init__(session)
         self._first: int | None = None
         """The number of the first step that is shown; None to show the present step in the middle."""
-        self._lines: Cached[Sequence[tuple[str, str]]] = Cached()
+        self._texts: Cached[Sequence[tuple[str, str]]] = Cached()
 
     def enter(self) -> None:
         self._first = None
@@ -70,74 +68,55 @@ class HistoryScreen(OverPicture):
         history = self.session.studio.history
         return (*history.to_undo, history.scene, *reversed(history.to_redo))
 
-    @property
-    def _present(self) -> int:
-        """The number of the present state."""
-        return len(self.session.studio.history.to_undo)
-
-    @property
-    def _shown(self) -> range:
-        """The numbers of the steps that are shown."""
-        count = len(self._scenes)
-        first = self._present - MOST_ROWS // 2 if self._first is None else self._first
-        first = max(0, min(first, count - MOST_ROWS))
-        return range(first, min(count, first + MOST_ROWS))
+    def _start(self) -> int:
+        """The number of the first step that is shown."""
+        present = len(self.session.studio.history.to_undo)
+        first = present - MOST_ROWS // 2 if self._first is None else self._first
+        return max(0, min(first, len(self._scenes) - MOST_ROWS))
 
     def _steps(self) -> Sequence[Widget]:
-        """The steps, each a row."""
-        shown, present = self._shown, self._present
-        rows = []
-        for place, (number, (line, whole)) in enumerate(zip(shown, self._texts(shown), strict=True)):
-            top = TOP + ROW_LINES * place
-            steps = number - present
-            row = StepRow(
-                f"step {number}",
-                f"Go to step {number}: {whole}" if steps else f"The present state, by step {number}: {whole}",
-                run=partial(self._go, steps),
-                is_chosen=not steps,
-                shown=f"{number:{DIGITS}}  {line}",
-                is_undone=steps > 0,
-                scroll=self._scroll,
-            )
-            rows.append(row.at(Area(LEFT, top, LEFT + WIDTH - 1, top + ROW_LINES - 1)))
-        return rows
+        """The steps that are shown, each a row."""
+        start, present = self._start(), len(self.session.studio.history.to_undo)
+        scenes = self._scenes[max(0, start - 1) : start + MOST_ROWS]
 
-    def _texts(self, shown: range) -> Sequence[tuple[str, str]]:
-        """The descriptions of some steps: short for a row, and in more detail for the message line."""
-        scenes = self._scenes[max(0, shown.start - 1) : shown.stop]
-
-        def lines() -> Sequence[tuple[str, str]]:
+        def texts() -> Sequence[tuple[str, str]]:
             steps = [
                 (describe_look(*pair, MOST_LETTERS) or AGAIN, describe_look(*pair, MOST_DESCRIBED) or AGAIN)
                 for pair in pairwise(scenes)
             ]
-            return [(BEGIN, BEGIN), *steps] if shown.start == 0 else steps
+            return steps if start else [(BEGIN, BEGIN), *steps]
 
-        return self._lines.of(lines, *scenes)
+        rows = []
+        for place, (line, whole) in enumerate(self._texts.of(texts, *scenes)):
+            number, top = start + place, LIST.top + ROW_LINES * place
+            what = f"The present state, by step {number}" if number == present else f"Go to step {number}"
+            row = StepRow(
+                f"{number:{DIGITS}}  {line}",
+                f"{what}: {whole}",
+                run=partial(self._go, number - present),
+                is_chosen=number == present,
+                is_undone=number > present,
+                scroll=self._scroll,
+            )
+            rows.append(row.at(Area(LIST.left, top, LIST.right, top + ROW_LINES - 1)))
+        return rows
 
     def _rows(self) -> Sequence[Widget]:
         count = len(self._scenes)
         if count <= MOST_ROWS:
             return []
-        return [
-            Pair(
-                "older",
-                f"Show older steps, or newer steps; there are {count - 1}.",
-                run=partial(self._scroll, 1),
-                other="newer",
-                run_other=partial(self._scroll, -1),
-            ),
-            Gap("list gap"),
-        ]
+        help = f"Show older steps, or newer steps; there are {count - 1}."
+        scroll = partial(self._scroll, 1), partial(self._scroll, -1)
+        return [Pair("older", help, run=scroll[0], other="newer", run_other=scroll[1]), Gap("list gap")]
 
     def _scroll(self, pages: float) -> None:
         """Scroll by some pages to older steps; a negative number scrolls to newer steps."""
-        self._first = self._shown.start
-        self._first = max(0, min(self._first - round(pages * (MOST_ROWS - 2)), len(self._scenes) - MOST_ROWS))
+        self._first = self._start() - round(pages * (MOST_ROWS - 2))
+        self._first = self._start()
 
     def _go(self, steps: int) -> None:
         """Undo or redo some steps at once. The list stays where it is."""
-        self._first = self._shown.start
+        self._first = self._start()
         if steps < 0:
             undo(self.session, -steps)
         elif steps > 0:
@@ -148,16 +127,12 @@ class HistoryScreen(OverPicture):
 class StepRow(Button):
     """A step, dim if it is undone."""
 
-    shown: str = ""
     is_undone: bool = False
     scroll: Callable[[float], object] = lambda _: None
 
     @property
     def ink(self) -> int:
         return LIGHT_GRAY if self.is_undone else super().ink
-
-    def items(self, lit: bool) -> list[Item]:
-        return self.row(lit, fitted(self.shown, self.characters), chosen=self.is_chosen)
 
     def nudge(self, steps: float) -> object:
         return self.scroll(steps / 8)

@@ -28,6 +28,7 @@ from autocolor.lighting.picking import (
 )
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import NORMALS
+from autocolor.screens.cached import Cached
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints
@@ -82,24 +83,31 @@ class LightHandles:
         self._placed: tuple[str, Source, VisiblePoints, tuple[int, int]] | None = None
         """A light, its source, the visible points, and the line and element where the highlight was placed.
         It is there without a search: other pixels may be as bright."""
-        self._searched: dict[str, tuple[object, str, tuple[int, int] | None]] = {}
-        """The planes of each light, the chosen surface, and the line and element of the highlight."""
-        self._rims: tuple[Light, VisiblePoints, Area, Sequence[Handle], Sequence[Item]] | None = None
-        """A light, the visible points, the area, and the handles and marks at the light's rims there."""
+        self._searched: dict[str, Cached[tuple[int, int] | None]] = {}
+        """The line and element of the highlight of each light that was searched."""
+        self._rims: Cached[tuple[Sequence[Handle], Sequence[Item]]] = Cached()
+        """The handles and the marks at the rims of the chosen light."""
 
     def handles(self) -> Sequence[Handle]:
         """The handles of the lights that are on; none while something moves."""
-        lights = self._seen_lights()
         if self.session.moving:
             return ()
-        chosen = [light for light in lights if light.name == self.session.light_name]
+        lights = self._seen_lights()
+        places = ((light.name, self._highlight(light)) for light in lights)
         # Of several handles at the same distance, the last is grabbed.
-        rims_seen = [each for light in chosen for each in self._at_rims(light)[0]]
-        return [*rims_seen, *(each for light in lights for each in self._at_highlight(light))]
+        return [
+            *self._at_rims(lights)[0],
+            *(
+                self._handle(HandleKey(name, HIGHLIGHT), *place, f"highlight of {name}")
+                for name, place in places
+                if place is not None
+            ),
+        ]
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         """Handles near a place. Of several highlights, the light that shines most at the place is first."""
-        numbers = [number for number, each in enumerate(near) if _is_highlight(each)]
+        keys = [each.key for each in near]
+        numbers = [n for n, key in enumerate(keys) if isinstance(key, HandleKey) and key.what == HIGHLIGHT]
         if len(numbers) < 2:
             return near
         shares = specular_shares(self.session.studio.picture, line, element)
@@ -109,40 +117,37 @@ class LightHandles:
             handles[number] = near[other]
         return handles
 
-    def items(self, numbered: bool = False) -> Sequence[Item]:
+    def items(self) -> Sequence[Item]:
         """The marks at the handles: dotted lines along the rims, and crosses at the highlights.
 
-        The cross of the chosen light is yellow. With `numbered`, a cross has the number of its light, from 1,
-        at its right. While something moves, only a dragged highlight is marked:
-        the light in the picture itself shows the rest, and the picture comes sooner. Measured on the coupe:
-        five rims take 8 of 20 ms, and a highlight a third of a light's drag.
+        A cross has the number of its light, from 1, at its right; that of the chosen light is yellow. While
+        something moves, only a dragged highlight is marked: the light in the picture itself shows the rest,
+        and the picture comes sooner. Measured on the coupe: five rims take 8 of 20 ms, and a highlight a
+        third of a light's drag.
         """
-        items: list[Item] = []
+        lights = self._seen_lights()
+        items = [] if self.session.moving else [*self._at_rims(lights)[1]]
         numbers = {light.name: number for number, light in enumerate(self.session.scene.lights, start=1)}
-        for light in self._seen_lights():
+        for light in lights:
             is_chosen = light.name == self.session.light_name
-            if is_chosen and not self.session.moving:
-                items += self._at_rims(light)[1]
-            if is_chosen or not self.session.moving:
-                word = YELLOW if is_chosen else WHITE
-                for each in self._at_highlight(light):
-                    items += highlight_items(each.element, each.line, self.area, word)
-                    if numbered:
-                        place = each.element + 2 * ARM + 2, each.line - CHARACTER_LINES // 2
-                        items.append(text(str(numbers[light.name]), *place, word, BLACK))
+            place = self._highlight(light) if is_chosen or not self.session.moving else None
+            if place is not None:
+                word, (line, element) = YELLOW if is_chosen else WHITE, place
+                items += highlight_items(element, line, self.area, word)
+                beside = element + 2 * ARM + 2, line - CHARACTER_LINES // 2
+                items.append(text(str(numbers[light.name]), *beside, word, BLACK))
         return items
 
-    def _driven(self, handle: Handle) -> Handle:
+    def _handle(self, key: HandleKey, line: int, element: int, label: str) -> Handle:
         """A handle that chooses and moves its light."""
-        key = _key_of(handle)
         hold = partial(self.session.choose_light, key.light)
-        return handle._replace(place=partial(self._place, key), hold=hold)
+        return Handle(key, element, line, label, place=partial(self._place, key), hold=hold)
 
     def _place(self, key: HandleKey, element: int, line: int) -> None:
         """Let the light follow a handle to a place. Raises UsageError on the background."""
         session = self.session
         # The menu covers the places beside the area.
-        element, line = min(element, self.area.right), min(max(line, self.area.top), self.area.bottom)
+        element, line = min(element, self.area.right), min(line, self.area.bottom)
         scene, seen = session.scene, session.studio.seen_at(line, element)
         if key.what == HIGHLIGHT:
             scene = highlight_placed(scene, seen, key.light)
@@ -167,20 +172,14 @@ class LightHandles:
         lights = [light for light in session.scene.lights_in_world if light.on]
         return sorted(lights, key=lambda light: light.name == chosen)
 
-    def _at_highlight(self, light: Light) -> list[Handle]:
-        """The handle at the highlight on the chosen surface, else on any surface, if it is in the area."""
+    def _highlight(self, light: Light) -> tuple[int, int] | None:
+        """The line and element of the highlight on the chosen surface, else on any surface, in the area."""
         placed, points = self._placed, self.session.studio.sight.points
         if placed is not None and placed[:2] == (light.name, _source_of(light)) and placed[2] is points:
             place: tuple[int, int] | None = placed[3]
-        elif self.session.moving:
-            return []
         else:
-            place = self._search(light.name)
-        if place is None:
-            return []
-        line, element = place
-        handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
-        return [self._driven(handle)] if self.area.has(element, line) else []
+            place = None if self.session.moving else self._search(light.name)
+        return place if place is not None and self.area.has(*reversed(place)) else None
 
     def _search(self, light: str) -> tuple[int, int] | None:
         """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E)."""
@@ -189,42 +188,40 @@ class LightHandles:
         # Where words stand for normals, or there are no planes, the place depends on all of the scene.
         is_seen = planes is not None and studio.scene.words != NORMALS
         source = planes.values if planes is not None and is_seen else studio.scene
-        searched = self._searched.get(light)
-        if searched is None or searched[0] is not source or searched[1] != surface:
+
+        def search() -> tuple[int, int] | None:
             place = None
             for name in (surface, None) if surface else (None,):
-                if is_seen:
-                    place = place or seen_highlight(studio.picture, light, name)
+                place = place or (seen_highlight(studio.picture, light, name) if is_seen else None)
                 place = place or studio.highlight_of(light, name)
-            searched = self._searched[light] = source, surface, place
-        return searched[2]
+            return place
 
-    def _at_rims(self, light: Light) -> tuple[Sequence[Handle], Sequence[Item]]:
-        """The handles and the marks at the rims in the area."""
-        sight, area = self.session.studio.sight, self.area
-        if not self._has_rims:
+        return self._searched.setdefault(light, Cached()).of(search, source, surface)
+
+    def _at_rims(self, lights: Sequence[Light]) -> tuple[Sequence[Handle], Sequence[Item]]:
+        """The handles and the marks at the rims of the chosen light, if it is on; `lights` has it last."""
+        sight, area, name = self.session.studio.sight, self.area, self.session.light_name
+        if not self._has_rims or not lights or lights[-1].name != name:
             return (), ()
-        cached = self._rims
-        if cached is None or cached[0] != light or cached[1] is not sight.points or cached[2] != area:
-            handles: list[Handle] = []
-            items: list[Item] = []
-            for rim, pixels in rims(sight, light.name).items():
-                seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1) & (pixels[:, 0] >= area.top)]
-                handles += map(self._driven, rim_handles(light.name, rim, seen))
+
+        def at_rims() -> tuple[Sequence[Handle], Sequence[Item]]:
+            handles, items = list[Handle](), list[Item]()
+            for rim, pixels in rims(sight, name).items():
+                seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
                 items += rim_items(seen, area)
-            cached = self._rims = light, sight.points, area, handles, items
-        return cached[3:]
+                label = f"end of the {name_of(rim)} of {name}"
+                for line, element in _in_cells(seen).tolist():
+                    handles.append(self._handle(HandleKey(name, rim, (line, element)), line, element, label))
+            return handles, items
+
+        return self._rims.of(at_rims, self.session.scene.lights, name, sight.points, area)
 
 
-def rim_handles(light: str, rim: Rim, pixels: Indices) -> list[Handle]:
-    """The handles along the pixels of a rim, (n, 2) line and element: a handle in each cell."""
+def _in_cells(pixels: Indices) -> Indices:
+    """One of the pixels, (n, 2) line and element, in each cell."""
     lines, elements = (pixels // CELL).T
     _, chosen = np.unique(lines * SCREEN.width + elements, return_index=True)
-    label = f"end of the {name_of(rim)} of {light}"
-    return [
-        Handle(HandleKey(light, rim, (line, element)), element, line, label)
-        for line, element in pixels[chosen].tolist()
-    ]
+    return pixels[chosen]
 
 
 def rim_items(pixels: Indices, area: Area) -> list[Item]:
@@ -252,10 +249,6 @@ def _key_of(handle: Handle) -> HandleKey:
     return handle.key
 
 
-def _is_highlight(handle: Handle) -> bool:
-    return isinstance(handle.key, HandleKey) and handle.key.what == HIGHLIGHT
-
-
 def _source_of(light: Light) -> Source:
     return light.position, light.axis if light.at_infinity else None
 
@@ -271,18 +264,16 @@ def message_of(light: Light, what: Literal["highlight"] | Rim, world: World) -> 
     """The message while a part of a light is placed; coordinates have the digits of their bars."""
 
     def shown(axis: str, value: float) -> str:
-        return number_text(value, world.range_of(axis).step)
+        return f"{axis} {number_text(value, world.range_of(axis).step)}"
 
-    if what == HIGHLIGHT:
-        places = zip("xyz", light.position, strict=True)
-        return f"{light.name}: " + "  ".join(f"{axis} {shown(axis, place)}" for axis, place in places)
     if what == CONE:
         return f"{light.name}: cone angle {light.cone_angle:.1f} degrees"
+    if isinstance(what, tuple) and not isinstance(what, Plane):
+        axis, end = what
+        flap = flaps_of(light)[axis]
+        limit = number_text(getattr(flap, end), world.range_of(axis).step)
+        return f"{light.name}: flap {axis}, {end} {limit}"
+    name, point = light.name, light.position
     if isinstance(what, Plane):
-        half_space = next(each for each in light.half_spaces if each.name == what.half_space)
-        places = zip("xyz", half_space.point, strict=True)
-        return f"{what.half_space}: " + "  ".join(f"{axis} {shown(axis, place)}" for axis, place in places)
-    axis, end = what
-    flap = flaps_of(light)[axis]
-    assert flap is not None
-    return f"{light.name}: flap {axis}, {end} {shown(axis, getattr(flap, end))}"
+        name, point = next((r.name, r.point) for r in light.half_spaces if r.name == what.half_space)
+    return f"{name}: " + "  ".join(map(shown, "xyz", point))

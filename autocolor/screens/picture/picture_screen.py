@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
+from autocolor.scene.kinds import in_digits
+from autocolor.scene.orbit import sides_of
 from autocolor.screens.file_actions import ask_to_leave, seeming_up, stand_up
 from autocolor.screens.light_parameters import all_lights_on, light_alone
+from autocolor.screens.picture import picture_edits as edits
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.over_picture import OverPicture, camera_rows, stage_rows, surface_row
-from autocolor.screens.picture.picture_edits import sides_of
+from autocolor.screens.picture.over_picture import OverPicture, camera_rows, light_switches, surface_row
+from autocolor.screens.picture.picture_edits import CLOSER, TURN
 from autocolor.screens.screen import Content, Surroundings, surface_at
 from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.widgets.items import SCREEN
 from autocolor.widgets.menu import WORK, Section
-from autocolor.widgets.widget import Button, Choice, Pair, Steps, Switch, Widget, titled
+from autocolor.widgets.rows import rows_of
+from autocolor.widgets.widget import Button, Choice, Entry, Pair, Steps, Widget, titled
 
-TURN: Final = 5.0
-"""Degrees for each step of a menu row that turns."""
-
-CLOSER: Final = 0.9
 PAN: Final = 16.0
 """Elements or lines for each step of a menu row that moves the picture."""
 
@@ -51,12 +51,12 @@ class PictureScreen(OverPicture):
             had_marks, self._has_marks = self._has_marks, may_mark
             return may_mark != had_marks
 
-        marks = self._handles.items(numbered=True) if self._has_marks and may_mark else ()
+        marks = self._handles.items() if self._has_marks and may_mark else ()
         return replace(
             content,
             items=[*content.items, *marks],
             # A click that explains a pixel picks no handle.
-            handles=() if session.explains else self._handles.handles(),
+            handles=() if session.explains else [*content.handles, *self._handles.handles()],
             preferred=self._handles.preferred,
             rows=self._rows,
             escape=self._escape,
@@ -64,59 +64,60 @@ class PictureScreen(OverPicture):
         )
 
     def hint(self, element: int, line: int) -> str:
-        pointed = self._pointed(element, line)
+        pointed = self.pointed(element, line)
         if pointed is None:
-            return super().hint(element, line)
+            return self.help
         does = "click explains" if self.session.explains else "drag turns, click chooses, Shift explains"
         return f"{', '.join(pointed.names)}: {does}"
 
     def _rows(self) -> Sequence[Widget]:
-        session, edits = self.session, self.edits
+        session = self.session
         return [
             *self._up_rows(),
-            surface_row(
-                session,
-                "The surface that you edit; a click in the picture chooses, too.",
-            ),
-            *stage_rows(edits),
+            surface_row(session, "The surface that you edit; a click in the picture chooses, too."),
+            *self._stage_rows(),
             Section("light switches"),
-            *self._light_rows(),
+            *light_switches(session, session.light_name, self._choose_light),
+            *self._alone_rows(),
             Section("turn & move"),
             Choice(
                 "view",
                 "Look at the object from a side.",
                 names=tuple(sides_of(session.scene)),
-                present=edits.side,
-                choose=edits.see_from,
+                present=edits.present_side(session),
+                choose=partial(edits.see_from, session),
             ),
             Steps(
-                "turn", "Turn around the object.", step=lambda n: edits.turn(n * TURN, 0), signs=("<", ">")
+                "turn",
+                "Turn around the object.",
+                step=lambda n: edits.turn(session, n * TURN, 0),
+                signs=("<", ">"),
             ),
-            Steps("rise", "Look from lower or from higher.", step=lambda n: edits.turn(0, n * TURN)),
-            Steps("closer", "Move farther or closer.", step=lambda n: edits.move(CLOSER**n)),
+            Steps("rise", "Look from lower or from higher.", step=lambda n: edits.turn(session, 0, n * TURN)),
+            Steps("closer", "Move farther or closer.", step=lambda n: edits.move(session, CLOSER**n)),
             Steps(
                 "move",
                 "Move the picture sideways.",
-                step=lambda n: edits.pan(n * PAN, 0),
+                step=lambda n: edits.pan(session, n * PAN, 0),
                 signs=("<", ">"),
             ),
-            Steps("lift", "Move the picture down or up.", step=lambda n: edits.pan(0, -n * PAN)),
+            Steps("lift", "Move the picture down or up.", step=lambda n: edits.pan(session, 0, -n * PAN)),
             Section("other actions"),
             Pair(
                 "rescale",
                 "Fill the picture with the object, or with the chosen surface.",
-                run=edits.rescale,
+                run=partial(edits.rescale, session),
                 other="surface",
-                run_other=lambda: edits.rescale(True),
+                run_other=partial(edits.rescale_surface, session),
             ),
             Pair(
                 "as opened",
                 f"Look as the scene's file says; or fill the picture with {session.part_name or 'a part'}.",
-                run=edits.as_opened,
+                run=partial(edits.as_opened, session),
                 other="part",
-                run_other=edits.rescale_part,
+                run_other=partial(edits.rescale_part, session),
             ),
-            *camera_rows(edits),
+            *camera_rows(session),
             Button(
                 "watch",
                 "Let the picture come in line by line, as in 1983.",
@@ -157,30 +158,38 @@ class PictureScreen(OverPicture):
         help = f"The mesh seems to lie on its side: read it again with {up} up, or do nothing."
         return [Button("on its side? turn", help, run=partial(stand_up, session))] if up else []
 
-    def _light_rows(self) -> list[Widget]:
-        session = self.session
-        switches: list[Widget] = [
-            Switch(
-                light.name,
-                f"Switch {titled('light', light.name)} on or off; beside the box: choose it.",
-                is_on=light.on,
-                flip=partial(self.edits.switch_light, number),
-                choose=partial(self._choose_light, light.name),
-                is_chosen=light.name == session.light_name,
-            )
-            for number, light in enumerate(session.scene.lights)
-        ]
-        chosen = session.light_name
+    def _stage_rows(self) -> list[Widget]:
+        """The row of the stage of the object, and where there is a backdrop, the rows of its two colors."""
+        session, colors = self.session, self.session.scene.backdrop_colors
+
+        def put(changes: Mapping[str, Any]) -> None:
+            session.edit(session.scene.replace(**changes))
+
+        rows = rows_of(session.scene, put, session.world, columns=("stage",))
+        help = "The color behind everything at the top or the bottom of the picture, as a name or #rrggbb."
+        if colors:
+            top, low = colors
+            rows += [
+                Entry("backdrop", help, value=in_digits(top), take=lambda top: put({"backdrop": [top, low]})),
+                Entry("  bottom", help, value=in_digits(low), take=lambda low: put({"backdrop": [top, low]})),
+            ]
+        return rows
+
+    def _alone_rows(self) -> list[Widget]:
+        """The row that switches on the chosen light alone."""
+        session, chosen = self.session, self.session.light_name
         if not chosen:
-            return switches
-        alone = Pair(
-            "alone",
-            f"Switch on {titled('light', chosen)} alone, and again: the lights as before; or all lights.",
-            run=partial(light_alone, session, chosen),
-            other="all on",
-            run_other=partial(all_lights_on, session),
-        )
-        return [*switches, alone]
+            return []
+        help = f"Switch on {titled('light', chosen)} alone, and again: the lights as before; or all lights."
+        return [
+            Pair(
+                "alone",
+                help,
+                run=partial(light_alone, session, chosen),
+                other="all on",
+                run_other=partial(all_lights_on, session),
+            )
+        ]
 
     def _choose_light(self, name: str) -> None:
         self.session.choose_light(name)

@@ -19,18 +19,22 @@ from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.palette import in_palette
 from autocolor.mapping.ranges import BACKGROUND, SURFACE_WORDS, WORDS
 from autocolor.screens.cached import Cached
-from autocolor.screens.comparing import NOW
+from autocolor.screens.comparing import BEFORE
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import SPLIT, Session
 from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, Area, Item, filled, fitted, text
+from autocolor.widgets.menu import WORK
 
 FIRST: Final = BACKGROUND + 1
 """The first borrowed word."""
 
+NOW: Final = "now"
+"""The name of the present state beside the line."""
+
 MIDDLE: Final = WIDTH // 2
-TOP: Final = 8
+TOP: Final = WORK.top + 8
 MARGIN: Final = 8
 """Elements between the line and the names of the states, and the line of these names."""
 
@@ -53,9 +57,9 @@ class SplitScreen(OverPicture):
     @property
     def halves(self) -> Halves:
         """The two pictures. Without another state, both are the present picture."""
-        other = self.session.comparing.other_image
         present = self.session.studio.display_image
-        return self._halves.of(lambda: halves_of(other or present, present), other, present)
+        other = self.session.comparing.other_image or present
+        return self._halves.of(lambda: halves_of(other, present), other, present)
 
     def enter(self) -> None:
         difference, off = self.session.comparing.difference, self.halves.off
@@ -71,7 +75,9 @@ class SplitScreen(OverPicture):
             return replace(gestures, base=whole.base, items=whole.items, loads=whole.loads)
         return replace(
             gestures,
-            base=self._base.of(lambda: halves.words(line), halves, line),
+            base=self._base.of(
+                lambda: read_only(np.hstack([halves.left[:, :line], halves.right[:, line:]])), halves, line
+            ),
             items=self._items_at_line(),
             loads=[(FIRST, halves.colors)],
         )
@@ -79,7 +85,8 @@ class SplitScreen(OverPicture):
     def _items_at_line(self) -> Sequence[Item]:
         """The line, and the names of the states beside it."""
         line, other = self._line, self.session.comparing.other
-        left = fitted(other.name if other else NOW, max(0, line - 2 * MARGIN) // CHARACTER)
+        name = NOW if other is None else "before" if other.name == BEFORE else other.name
+        left = fitted(name, max(0, line - 2 * MARGIN) // CHARACTER)
         right = fitted(NOW, max(0, WIDTH - line - 2 * MARGIN) // CHARACTER)
         return [
             filled(Area(line - 1, 0, line - 1, HEIGHT - 1), BLACK),
@@ -103,10 +110,6 @@ class Halves(NamedTuple):
     right: Words
     colors: Bytes
     off: int
-
-    def words(self, line: int) -> Words:
-        """The words of the left picture before an element, and of the right picture from there on."""
-        return read_only(np.hstack([self.left[:, :line], self.right[:, line:]]))
 
 
 def halves_of(left: DisplayImage, right: DisplayImage) -> Halves:

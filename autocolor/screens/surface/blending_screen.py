@@ -10,17 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 from autocolor.mapping.colors import blend_from, blend_level
-from autocolor.screens.input import Gesture
-from autocolor.screens.picture.over_picture import OverPicture, paint_rows, surface_row
+from autocolor.screens.picture.over_picture import OverPicture, surface_row
 from autocolor.screens.screen import Content, Surroundings
-from autocolor.screens.surface.painting import change_paint
+from autocolor.screens.session import BLENDING, MIXING
+from autocolor.screens.surface.painting import change_paint, paint_rows
 from autocolor.widgets.bars import LANE, LevelBar, PercentBar
-from autocolor.widgets.items import WIDTH, Area
+from autocolor.widgets.items import CHARACTER, WIDTH, Area, text
 from autocolor.widgets.menu import MENU
-from autocolor.widgets.widget import Gap, Widget
+from autocolor.widgets.widget import TEXT_DOWN, Button, Gap, Widget
 
 TOP: Final = 24
 BOTTOM: Final = MENU.bottom - 24
@@ -33,67 +34,52 @@ BESIDE: Final = 5
 class BlendingScreen(OverPicture):
     """The picture, and how the two colors of the chosen surface blend."""
 
-    name = "blending"
+    name = BLENDING
     title = "light blending"
-    word = "blend"
     help = "Pick a level on the bar: the light color blends in above it"
     has_menu = False
 
     def enter(self) -> None:
-        self._explain_missing_bar()
-
-    def pick(self, gesture: Gesture) -> None:
-        before = self.session.surface_name
-        super().pick(gesture)
-        if self.session.surface_name != before:
-            self._explain_missing_bar()
-
-    def _choose(self, name: str) -> None:
-        self.session.choose_surface(name)
-        self._explain_missing_bar()
-
-    def _explain_missing_bar(self) -> None:
-        surface = self.session.chosen_surface
-        if surface is not None and surface.paint.ramp is not None:
-            self.session.tell(f"{surface.name} has a ramp and no blend; change the ramp in color mixing")
+        if not self.session.has_news:
+            self.session.tell(f"{self.help}; the right edge: the menu")
 
     def build(self, around: Surroundings) -> Content:
-        content = replace(super().build(around), rows=self._rows)
-        if not around.has_panels:
+        content = replace(super().build(around), rows=self._rows, escape=self._escape)
+        surface = self.session.chosen_surface
+        if not around.has_panels or surface is None:
             return content
-        # The bar takes the legend's place.
-        return replace(content, items=(), widgets=self._bars(around.has_menu))
+        # Where the menu comes, the bar moves to its left. It takes the legend's place.
+        right = (MENU.left if around.has_menu else WIDTH) - BESIDE
+        if surface.paint.ramp is None:
+            return replace(content, items=(), widgets=self._bars(right))
+        label = "a ramp has no blend; change the ramp in color mixing"
+        return replace(content, items=[text(label, right - CHARACTER * len(label), TOP + TEXT_DOWN)])
+
+    def _escape(self) -> bool:
+        self.session.turn_to(MIXING)
+        return True
 
     def _rows(self) -> Sequence[Widget]:
-        surface = self.session.chosen_surface
+        session, surface = self.session, self.session.chosen_surface
+        back = Button("< color mixing", "Back to color mixing.", run=partial(session.turn_to, MIXING))
         if surface is None:
-            return []
-        return [
-            surface_row(
-                self.session,
-                "The surface whose colors blend; a click in the picture chooses, too.",
-                self._choose,
-            ),
-            Gap("blend gap"),
-            *paint_rows(self.session, surface.paint),
-        ]
+            return [back]
+        help = "The surface whose colors blend; a click in the picture chooses, too."
+        return [back, surface_row(session, help), Gap("blend gap"), *paint_rows(session, surface.paint)]
 
-    def _bars(self, has_menu: bool) -> Sequence[Widget]:
-        surface = self.session.chosen_surface
-        if surface is None or surface.paint.ramp is not None:
-            return []
-        levels = self.session.studio.level_ranges[surface.name].levels
-        # Where the menu comes, the bar moves to its left.
-        right = (MENU.left if has_menu else WIDTH) - BESIDE
+    def _bars(self, right: int) -> Sequence[Widget]:
+        """The bars of the blend level and of the percentage, whose numbers end before an element."""
+        name, image = self.session.surface_name, self.session.studio.display_image
+        paint, levels = self.session.scene.surfaces[name].paint, image.ranges[name].levels
         between = right - PERCENT_ELEMENTS
-        paint = surface.paint
         return [
             LevelBar(
                 "blend level",
                 "The light color blends in above the handle; pick a level, or drag.",
                 area=Area(between - BAR_ELEMENTS - LANE, TOP, between - 1, BOTTOM),
-                words=self.session.studio.display_image.words_at_levels(surface.name),
-                level=blend_level(paint.blend, levels),
+                words=image.words_at_levels(name),
+                value=blend_level(paint.blend, levels),
+                most=levels - 1,
                 put=lambda level: change_paint(self.session, blend=blend_from(level, levels)),
                 number=f"{paint.blend:.2f}",
                 upright=True,

@@ -17,13 +17,11 @@ from autocolor.checks import Color
 from autocolor.files.palette_file import Palette
 from autocolor.files.state import note_color, recent_colors
 from autocolor.scene.kinds import in_digits
-from autocolor.scene.surfaces import Paint
-from autocolor.scene.swatches import COLUMNS, FINISHES, ROWS, swatches
-from autocolor.screens.cached import Cached
+from autocolor.scene.swatches import COLUMNS, ROWS, swatches
 from autocolor.screens.session import Session
-from autocolor.screens.surface.painting import finish
-from autocolor.widgets.items import NIGHT, Area, Item, image
-from autocolor.widgets.widget import Button, Gap, Place, Widget, page_choice
+from autocolor.screens.surface.painting import PaintColor, colors_of
+from autocolor.widgets.items import NIGHT, Item, image
+from autocolor.widgets.widget import Gap, Place, Widget, page_choice
 
 CELL_ELEMENTS: Final = 12
 CELL_LINES: Final = 10
@@ -32,8 +30,10 @@ CELL_LINES: Final = 10
 MOST_RECENT: Final = ROWS
 """Recent colors in their row, which is as wide as the swatches."""
 
+PAGE: Final = ROWS * COLUMNS
+"""The most paints of a page."""
 
-FEW_PAINTS: Final = ROWS * COLUMNS // 4
+FEW_PAINTS: Final = PAGE // 4
 """The paints that fit in cells of twice the size."""
 
 
@@ -42,47 +42,36 @@ class ColorPage(NamedTuple):
 
     title: str
     colors: Bytes
-    names: Sequence[str] = ()
-    is_large: bool = False
+    names: Sequence[str]
+    size: int = 1
+    """Whether its cells are of the usual size, 1, or of twice that size, 2."""
 
 
-def pages_of_paints(paints: Palette | None, file: str) -> list[ColorPage]:
-    """The pages of the paints of a file, if there are paints, and last the page of the swatches."""
-    pages, size = [], ROWS * COLUMNS
-    count = 0 if paints is None else len(paints)
-    for first in range(0, count, size):
-        assert paints is not None
-        end = min(first + size, count)
-        title = f"paints {first + 1:,} to {end:,} of {file}" if count > size else f"the paints of {file}"
-        colors, names = np.array(paints.colors[first:end], np.uint8), paints.names[first:end]
-        pages.append(ColorPage(title, colors, names, count <= FEW_PAINTS))
-    hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
-    return [*pages, ColorPage("the swatches", hues_down)]
+def page_of_paints(paints: Palette | None, file: str, number: int) -> ColorPage:
+    """A page of the paints of a file, counted from 0; after the last page of paints, the swatches."""
+    count, first = 0 if paints is None else len(paints), number * PAGE
+    if paints is None or first >= count:
+        hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
+        return ColorPage("the swatches", hues_down, ("",) * PAGE)
+    end = min(first + PAGE, count)
+    title = f"paints {first + 1:,} to {end:,} of {file}" if count > PAGE else f"the paints of {file}"
+    colors = np.array(paints.colors[first:end], np.uint8)
+    return ColorPage(title, colors, paints.names[first:end], 2 if count <= FEW_PAINTS else 1)
 
 
 class PaintChoices:
-    """The finishes of the chosen surface, and colors.
-
-    `take` is called with a color that is picked, and its name, which may be empty.
-    """
+    """The colors to choose from. `take` is called with a color, and its name, which may be empty."""
 
     def __init__(self, session: Session, take: Callable[[Color, str], object]) -> None:
         self.session = session
         self._take = take
         self._recent: tuple[Color, ...] = ()
-        self._pages: Cached[list[ColorPage]] = Cached()
         self._turned: tuple[Palette | None, int] = None, 0
         """Paints, and the number of the page to which the user turned while they were shown."""
         self._taken = 0
         """The number of the color that was taken last, on its page."""
-        self._before: dict[str, Paint] = {}
-        """The paints of all surfaces when the mixing began."""
-
-    @property
-    def pages(self) -> list[ColorPage]:
-        """The pages of colors."""
-        paints, file = self.session.paints, self.session.paints_name
-        return self._pages.of(lambda: pages_of_paints(paints, file), paints)
+        self.mixed: set[Color] = set()
+        """The colors that were given to surfaces one by one, since they were last noted."""
 
     @property
     def page_number(self) -> int:
@@ -93,31 +82,29 @@ class PaintChoices:
     @property
     def page(self) -> ColorPage:
         """The page that is shown."""
-        return self.pages[self.page_number]
-
-    @property
-    def count(self) -> int:
-        """The number of colors that can be picked."""
-        return len(self.page.colors) + len(self._recent)
+        return page_of_paints(self.session.paints, self.session.paints_name, self.page_number)
 
     @property
     def colors(self) -> Bytes:
         """The colors that can be picked, (n, 3) uint8: the page's colors, and then the recent colors."""
         return np.concatenate([self.page.colors, np.array(self._recent, np.uint8).reshape(-1, 3)])
 
-    def rows(self, words: Words, name: str, present: Color) -> list[Widget]:
-        """The rows of the colors; `words` show the colors.
+    def rows(self, words: Words, chosen: PaintColor) -> list[Widget]:
+        """The rows of the colors for the chosen color of the surface; `words` show the colors."""
+        page, paints = self.page, self.session.paints
+        count, pages = len(page.colors), 1 + (0 if paints is None else -(-len(paints) // PAGE))
 
-        `name` is the name of the color of the surface to choose, and `present` is its present value.
-        """
-        page, pages = self.page, len(self.pages)
-        count, size = len(page.colors), 2 if page.is_large else 1
+        def hint(number: int) -> str:
+            name, color = self._color(number)
+            return f"{f'{name}, ' if name else ''}{in_digits(color)}: click it for {chosen.name}"
+
         recent = SwatchField(
             "recent colors",
-            f"The colors that were mixed last; click one for {name}.",
+            f"The colors that were mixed last; click one for {chosen.name}.",
             words=words[count:],
             across=MOST_RECENT,
-            take=self._take_recent,
+            take=lambda number: self._take_number(count + number),
+            hint_of=lambda number: hint(count + number),
         )
         turning = page_choice(
             f"Shown: {page.title}. A click turns to the next page, at the left end to the page before.",
@@ -125,78 +112,52 @@ class PaintChoices:
             pages,
             self._turn,
         )
-        paints = PaintField(
+        field = PaintField(
             "paints",
-            f"Paints for {name}: click one, or drag over them.",
+            f"Paints for {chosen.name}: click one, or drag over them.",
             words=words[:count],
-            across=ROWS // size,
-            width=size * CELL_ELEMENTS,
-            height=size * CELL_LINES,
+            across=ROWS // page.size,
+            width=page.size * CELL_ELEMENTS,
+            height=page.size * CELL_LINES,
             take=self._take_number,
-            step=partial(self._step, present),
-            hint_of=partial(self._hint_of, name) if page.names else None,
+            step=partial(self._step, chosen.color),
+            hint_of=hint,
         )
         gap = (recent, Gap("recent gap")) if self._recent else ()
-        return [Gap("swatches gap"), *gap, *([turning] if pages > 1 else []), paints]
-
-    def _hint_of(self, name: str, number: int) -> str:
-        paint, (red, green, blue) = self.page.names[number], self.page.colors[number].tolist()
-        return f"{f'{paint}, ' if paint else ''}{in_digits((red, green, blue))}: click it for {name}"
+        return [Gap("swatches gap"), *gap, *([turning] if pages > 1 else []), field]
 
     def _turn(self, number: int) -> None:
         self._turned, self._taken = (self.session.paints, number), 0
         self.session.tell(f"shown: {self.page.title}")
 
-    def finishes(self, row: Area) -> list[Widget]:
-        """The finishes, side by side in a row."""
-        width = row.width // len(FINISHES)
-        area = row._replace(right=row.left + width - 1)
-        return [
-            Button(
-                name,
-                f"Let the surface look like {name}, in its object color.",
-                area=area._replace(left=area.left + number * width, right=area.right + number * width),
-                run=partial(finish, self.session, name),
-            )
-            for number, name in enumerate(FINISHES)
-        ]
-
-    def begin(self) -> None:
-        """Mixing begins: note the paints, and look up the recent colors."""
-        self._before = {each.name: each.paint for each in self.session.scene.surfaces}
+    def note_mixed(self) -> None:
+        """Note the mixed colors that surfaces have as recent colors, and look up the recent colors."""
+        for surface in self.session.scene.surfaces:
+            for color in dict.fromkeys(colors_of(surface.paint)):
+                if color in self.mixed:
+                    note_color(color)
+        self.mixed.clear()
         self._recent = recent_colors()[:MOST_RECENT]
 
-    def end(self) -> None:
-        """Mixing ends: note the new colors of the surfaces as recent colors."""
-        for surface in self.session.scene.surfaces:
-            before, now = self._before.get(surface.name, surface.paint), surface.paint
-            olds, news = (paint.ramp or (paint.light_color, paint.object_color) for paint in (before, now))
-            if (before.ramp is None) == (now.ramp is None):
-                # Adding or removing a color of a ramp moves the others, which are not new.
-                mixed = [color for color in dict.fromkeys(news) if color not in olds]
-                for color in mixed[-MOST_RECENT:]:
-                    note_color(color)
-
-    def _take_recent(self, number: int) -> None:
-        self._take(self._recent[number], "")
+    def _color(self, number: int) -> tuple[str, Color]:
+        """The name and the value of one of `colors`; recent colors have no name."""
+        names, (red, green, blue) = self.page.names, self.colors[number].tolist()
+        return names[number] if number < len(names) else "", (red, green, blue)
 
     def _take_number(self, number: int) -> None:
-        page, self._taken = self.page, number
-        red, green, blue = page.colors[number].tolist()
-        self._take((red, green, blue), page.names[number] if page.names else "")
+        self._taken = number
+        name, color = self._color(number)
+        self._take(color, name)
 
     def _step(self, present: Color, step: int) -> None:
         """Take the color that is a step further on the page than the present one.
 
         If several paints have the present color, the paint that was taken last counts as the present paint.
         """
-        is_present = (self.page.colors == present).all(axis=1)
-        if is_present.any():
-            places = np.flatnonzero(is_present).tolist()
-            number = self._taken if self._taken in places else places[0]
-            self._take_number((number + step) % len(is_present))
-        else:
-            self._take_number(0 if step > 0 else len(is_present) - 1)
+        colors = self.page.colors
+        places = np.flatnonzero((colors == present).all(axis=1)).tolist() or [-1 if step > 0 else len(colors)]
+        number = self._taken if self._taken in places else places[0]
+        self._take_number((number + step) % len(colors))
 
 
 @dataclass(frozen=True)
@@ -216,13 +177,13 @@ class SwatchField(Widget):
     take: Callable[[int], object] = lambda _: None
     step: Callable[[int], object] = lambda _: None
     """Called with 1 or -1, to take the next cell or the one before, by a key or the wheel."""
-    hint_of: Callable[[int], str] | None = None
-    """Gives the text of the message line for a cell; without it, the help is for all cells."""
+    hint_of: Callable[[int], str] = lambda _: ""
+    """Gives the text of the message line for a cell."""
     row_lines: ClassVar[int] = CELL_LINES
 
     def hint_at(self, place: Place) -> str:
         number = self.cell_at(place)
-        return self.hint if number is None or self.hint_of is None else self.hint_of(number)
+        return self.hint if number is None else self.hint_of(number)
 
     @property
     def _left(self) -> int:
@@ -230,18 +191,14 @@ class SwatchField(Widget):
         return self.area.left + (self.area.width - self.across * self.width) // 2
 
     def items(self, lit: bool) -> list[Item]:
-        place = self._left, self.area.top
-        return list(_cells(self.words.tobytes(), place, self.across, self.width, self.height))
+        return [_cells(self.words.tobytes(), self._left, self.area.top, self.across, self.width, self.height)]
 
     def cell_at(self, place: Place) -> int | None:
         """The number of the cell at a place, if there is one."""
-        column, row = (
-            (place.element - self._left) // self.width,
-            (place.line - self.area.top) // self.height,
-        )
+        column = (place.element - self._left) // self.width
+        row = (place.line - self.area.top) // self.height
         number = row * self.across + column
-        is_there = 0 <= column < self.across and 0 <= number < len(self.words)
-        return number if is_there else None
+        return number if 0 <= column < self.across and 0 <= number < len(self.words) else None
 
     def pick(self, place: Place) -> object:
         number = self.cell_at(place)
@@ -262,15 +219,12 @@ class PaintField(SwatchField):
 
 
 @lru_cache(maxsize=8)
-def _cells(data: bytes, place: tuple[int, int], across: int, width: int, height: int) -> tuple[Item, ...]:
+def _cells(data: bytes, left: int, top: int, across: int, width: int, height: int) -> Item:
     words = np.frombuffer(data, np.uint16)
-    if not len(words):
-        return ()
-    rows = -(-len(words) // across)
-    grid = np.full(rows * across, NIGHT, np.uint16)
+    grid = np.full(-(-len(words) // across) * across, NIGHT, np.uint16)
     grid[: len(words)] = words
-    cells = grid.reshape(rows, across).repeat(height, axis=0).repeat(width, axis=1)
+    cells = grid.reshape(-1, across).repeat(height, axis=0).repeat(width, axis=1)
     # The ground shows between the cells, at the right and lower edge of each cell.
     cells[height - 1 :: height] = NIGHT
     cells[:, width - 1 :: width] = NIGHT
-    return (image(cells, *place),)
+    return image(cells, left, top)

@@ -106,7 +106,7 @@ def test_names_with_spaces_dashes_dots_and_foreign_letters_are_names(
 
 
 def test_a_demo_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autocolor.commands.demo.PLACES", (tmp_path,))
+    monkeypatch.setattr("autocolor.files.paths.EXAMPLE_PLACES", (tmp_path,))
     with pytest.raises(MissingInputError, match="install autocolor again"):
         demo()
 

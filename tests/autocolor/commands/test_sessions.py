@@ -112,8 +112,7 @@ def test_a_program_that_is_killed_or_ended_leaves_its_steps_to_be_recovered(
 
 
 NONE_LEFT = (
-    "--recover: there must be a session that was not closed and can be read, and there is none; name a scene"
-    " instead"
+    "there must be a session that was not closed and can be read, and there is none; open a scene instead"
 )
 
 
@@ -237,7 +236,7 @@ def test_a_session_that_was_left_is_mentioned_where_a_scene_is_shown(
     ran = run("view", "scene")
     assert ran.err.startswith("autocolor: 3 sessions were not closed, last written 1971-02-0")
     assert ran.err.endswith(f"{told} removes a session\n")
-    assert "a session was not closed: autocolor view --recover opens it; " in monitors[1].caption
+    assert "a session was not closed: file, recover opens it; " in monitors[1].caption
     for name in ("2026-01-01", "2026-01-02-c"):
         assert run("view", "--forget", name).code == 0
     assert run("view", "scene").err.startswith("autocolor: a session was not closed, last written 1971-02-0")

@@ -110,9 +110,15 @@ def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
 
 
 def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_path: Path) -> None:
-    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj lights.toml other.toml a.npz a.db b.GPL d.csv"
-    for name in files.split():
-        (tmp_path / name).write_text("minimum = [0, 0, 0]" if name == "lights.toml" else "")
+    texts = {
+        "both.toml": 'minimum = [0, 0, 0]\n[[mesh]]\nfile = "car.obj"',
+        "broken.toml": "minimum = [",
+        "lights.toml": "minimum = [0, 0, 0]",
+        "other.toml": "ambient = 0.5",
+    }
+    files = "car10.obj car2.obj Car3.OBJ notes.txt .hidden.obj a.npz a.db b.GPL d.csv"
+    for name in (*files.split(), *texts):
+        (tmp_path / name).write_text(texts.get(name, ""))
     for name in ("b", "a scene", "a mesh", ".git"):
         (tmp_path / name).mkdir()
     (tmp_path / "a scene" / "scene.toml").write_text("")
@@ -124,10 +130,12 @@ def test_what_can_be_opened_is_listed_in_natural_order_with_folders_last(tmp_pat
         ("a.db", "store"),
         ("a.npz", "picture"),
         ("b.GPL", "paints"),
+        ("both.toml", "scene"),
+        ("broken.toml", "scene"),
         ("car2.obj", "mesh"),
         ("Car3.OBJ", "mesh"),
         ("car10.obj", "mesh"),
-        ("lights.toml", "scene"),
+        ("lights.toml", "rig"),
         ("b", "folder"),
     ]
 

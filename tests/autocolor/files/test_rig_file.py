@@ -9,7 +9,7 @@ from hypothesis import given
 
 from autocolor import Light, OutputError, Rig, Scene, read_rig, scene_of, write_rig
 from autocolor.errors import UsageError
-from autocolor.files.rig_file import is_rig
+from autocolor.files.opening import kind_of
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.small import cube
 from tests.tables import refused
@@ -32,7 +32,7 @@ def test_a_rig_read_back_puts_the_same_lights_on_the_same_scene(
     write_rig(path, scene)
     assert read_rig(path) == scene.rig
     assert scene.replace(lights=()).with_rig(read_rig(path)).lights == scene.lights
-    assert is_rig(path)
+    assert kind_of(path) == "rig"
 
 
 def test_the_file_reads_like_a_scene_file(tmp_path: Path) -> None:
@@ -78,12 +78,3 @@ def test_what_cannot_be_written_is_refused_and_leaves_no_file(tmp_path: Path) ->
         with pytest.raises(UsageError, match=sentence):
             write_rig(tmp_path / name, rig)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_file_without_the_size_of_an_object_or_with_a_mesh_is_no_rig(tmp_path: Path) -> None:
-    path = tmp_path / "rig.toml"
-    for text in ("", "ambient = 0.5", 'minimum = [0, 0, 0]\n[[mesh]]\nfile = "car.obj"', "minimum = ["):
-        path.write_text(text)
-        assert not is_rig(path), text
-    assert not is_rig(tmp_path / "gone.toml")
-    assert not is_rig(tmp_path)

@@ -8,8 +8,9 @@ import pytest
 
 import autocolor
 from autocolor import InputError, Mesh, read_scene
+from autocolor.files.paths import PACKAGE
 from autocolor.files.stamps import stamp_of
-from autocolor.journal.places import NO_STAMP, PACKAGE, Source, checksum_of, opened, place_of
+from autocolor.journal.places import NO_STAMP, Source, checksum_of, opened, place_of
 from autocolor.scene.columns import to_plain
 from autocolor.scene.scalar import MeshScalar
 from tests.small import car
@@ -77,7 +78,7 @@ def test_a_scene_that_is_opened_again_shares_the_mesh_if_it_is_the_same(source: 
 def test_meshes_and_files_of_the_package_have_no_stamp(tmp_path: Path) -> None:
     (tmp_path / "car.obj").write_text("v 0 0 0\n")
     assert place_of(Source(str(tmp_path / "car.obj"))).stamp is None
-    inside = PACKAGE / "demo_scene" / "scene.toml"
+    inside = PACKAGE / "examples" / "coupe" / "scene.toml"
     assert place_of(Source(str(inside))).stamp is None
     assert Path(autocolor.__file__).parent == PACKAGE
 

@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 
 import autocolor
 from autocolor import OutputError, Studio, UsageError, WriteError, read_picture, read_scene, write_picture
+from autocolor.files.paths import PACKAGE
 from autocolor.journal.history import History
-from autocolor.journal.places import PACKAGE, ScenePlace, Source, opened
+from autocolor.journal.places import ScenePlace, Source, opened
 from autocolor.journal.saving import SavedFiles
 from ramtek_emu import Ramtek9300
 from tests.small import SMALL, car

@@ -50,6 +50,12 @@ class PaintingHand(Hand):
         keys = (each for each in self.viewer.board.widgets() if each.key == label)
         return next(keys, None) or super().widget(label)
 
+    def turn_to(self, title: str) -> None:
+        """Go to a screen by the strip. A row of color mixing leads to light blending."""
+        super().turn_to("color mixing" if title == "light blending" else title)
+        if title == "light blending":
+            self.pick(title)
+
     def leave(self) -> None:
         """Go back to the picture, away from its menu, with no message."""
         self.turn_to("picture")

@@ -1,8 +1,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from datetime import datetime
-from itertools import combinations
+from itertools import chain, combinations
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,10 @@ from PIL import Image
 
 from autocolor import (
     Light,
+    Studio,
     image,
     read_picture,
+    read_rig,
     read_scene,
     render,
     save_image,
@@ -23,27 +26,29 @@ from autocolor import (
 )
 from autocolor.budget import allowing
 from autocolor.files.state import note_file, recent_files
-from autocolor.mapping.ranges import SCREENS
+from autocolor.journal.autosave import Autosave
+from autocolor.journal.history import History
+from autocolor.journal.places import Source, opened
 from autocolor.screens.file_actions import open_file
 from autocolor.screens.file_screen import (
-    FRAME,
     LEFT,
     LONGEST_DATE,
     MOST_ROWS,
-    RIGHT,
-    THUMBNAIL,
-    TICKS_TO_EXPORT,
+    RECENT_PLACES,
+    TICKS_TO_REST,
     FileRow,
-    date_of,
     short_date,
 )
+from autocolor.screens.gallery import Tile
 from autocolor.screens.session import PICTURE, Clipboard
-from autocolor.widgets.items import Area
+from autocolor.screens.viewer import Viewer
+from autocolor.widgets.items import CHARACTER
+from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import Choice
+from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo
 from tests.autocolor.screens.hand import Hand
 from tests.small import LYING, wall_scene
-from tests.tables import first
 
 
 @pytest.fixture
@@ -64,15 +69,19 @@ def hand(folder: Path) -> Hand:
     return hand_at(folder, "file")
 
 
-def rows_of(hand: Hand, recent: bool = False) -> dict[str, FileRow]:
-    """The rows of files, by the names that are shown."""
-    column = RIGHT if recent else LEFT
-    rows = hand.viewer.board.content.widgets
-    return {row.shown: row for row in rows if isinstance(row, FileRow) and column.covers(row.area)}
+def rows_of(hand: Hand) -> dict[str, FileRow]:
+    """The rows of the folder's files, by the names that are shown."""
+    return {row.shown: row for row in hand.viewer.board.content.widgets if isinstance(row, FileRow)}
 
 
-def pick(hand: Hand, name: str, recent: bool = False) -> None:
-    area = rows_of(hand, recent)[name].area
+def tiles_of(hand: Hand, within: str = "recent") -> dict[str, Tile]:
+    """The tiles of recent files, of the examples, or of the file under the pointer, by their names."""
+    tiles = [each for each in hand.viewer.board.content.widgets if isinstance(each, Tile)]
+    return {each.label: each for each in tiles if each.within == within}
+
+
+def pick(hand: Hand, name: str, within: str = "") -> None:
+    area = (tiles_of(hand, within)[name] if within else rows_of(hand)[name]).area
     hand.click(area.left + 40, area.top + 8)
 
 
@@ -144,15 +153,10 @@ def test_a_mesh_that_lies_is_hinted_and_set_up_by_a_row_as_one_step(hand: Hand, 
     assert told(hand) == ("opened spire.obj; undo goes back", False)
 
 
-def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand) -> None:
+def test_a_rig_is_put_on_the_scene_and_fitted(hand: Hand, folder: Path) -> None:
     before = hand.scene
     pick(hand, "rig.toml")
-    (lamp,) = hand.scene.lights
-    assert hand.scene.mesh is before.mesh
-    # The wall is 2 x 0 x 2 around the origin, the cube 1 x 1 x 1 around its middle.
-    scale = (3 / 8) ** 0.5
-    assert lamp.position == pytest.approx((0.5, 0.5 - 2 * scale, 0.5))
-    assert lamp.aim == pytest.approx((0.5, 0.5, 0.5))
+    assert hand.scene.equals(before.with_rig(read_rig(folder / "rig.toml")))
     assert told(hand) == ("the lights of rig.toml, fitted to boxes; undo goes back", False)
     hand.open_menu()
     undo(hand)
@@ -195,7 +199,7 @@ def test_a_pointer_from_elsewhere_keeps_to_the_folder(hand: Hand, folder: Path) 
     kinds = {name: row.value for name, row in rows_of(hand).items()}
     assert list(kinds) == ["broken.obj", "file link.obj", "rig.toml", "wall", "deeper"]
     assert list(kinds.values()) == ["mesh", "mesh", "rig", "scene", "folder"]
-    assert list(rows_of(hand, recent=True)) == ["wall/scene.toml"]
+    assert list(tiles_of(hand)) == ["wall"]
     # No path of the machine is shown.
     pick(hand, "deeper")
     shown = [row.help for row in rows_of(hand).values()]
@@ -213,12 +217,12 @@ def test_the_user_of_the_machine_goes_up_and_opens_recent_files(folder: Path) ->
     hand.viewer.session.is_at_hand = True
     hand.turn_to("picture")
     hand.turn_to("file")
-    assert list(rows_of(hand, recent=True)) == ["outside"]
+    assert list(tiles_of(hand)) == ["outside"]
     pick(hand, "..")
     assert {"inside", "outside"} <= set(rows_of(hand))
     hand.pick("save the rig")
     assert (folder.parent / "boxes-rig.toml").exists()
-    pick(hand, "outside", recent=True)
+    pick(hand, "outside", "recent")
     assert hand.scene.name == "outside"
 
 
@@ -226,18 +230,16 @@ def test_the_user_of_the_machine_goes_up_and_opens_recent_files(folder: Path) ->
 def test_the_pages_of_a_large_folder_show_all_files(tmp_path: Path, number: int) -> None:
     for each in range(number):
         (tmp_path / f"{each}.obj").touch()
+        note_file(tmp_path / f"{each}.obj")
     hand = hand_at(tmp_path, "file")
-    seen: list[str] = []
-    while len(seen) < number:
-        page = list(rows_of(hand))
-        assert page
-        seen += page
-        if len(seen) < number:
-            hand.pick("page")
-    assert seen == [f"{each}.obj" for each in range(number)]
+    recent = list(tiles_of(hand))
+    hand.click(RECENT_PLACES[1].right - 8, WORK.top + 8)
+    assert [*recent, *tiles_of(hand)] == [f"{each}.obj" for each in range(number - 1, number - 9, -1)]
+    pages = [list(rows_of(hand))]
     if number > MOST_ROWS:
-        hand.pick("page", 0.05)
-        assert "page" in [row.label for row in hand.viewer.board.content.widgets]
+        hand.pick("page", 0.8)
+        pages.append(list(rows_of(hand)))
+    assert [*chain(*pages)] == [f"{each}.obj" for each in range(number)]
 
 
 def test_the_up_axis_and_the_scale_of_a_mesh_are_chosen_before_it_is_opened(hand: Hand, folder: Path) -> None:
@@ -263,27 +265,19 @@ def test_new_files_go_to_the_folder_that_is_shown(hand: Hand, folder: Path) -> N
     hand.pick("save")
     assert told(hand) == (f"saved {Path('deeper/boxes/scene.toml')} and {Path('deeper/boxes.npz')}", False)
     assert "*" not in hand.viewer.caption
-    assert rows_of(hand, recent=True)
+    assert list(tiles_of(hand)) == ["boxes"]
     for label, message in (
         ("save the rig", "saved boxes-rig.toml"),
         ("screenshot", f"saved {Path('inside/deeper/autocolor-0001.png')}"),
-        ("export", "exporting 640x480, smoothness 2 ..."),
+        ("export", "exporting boxes, 640x480, smoothness 2 ..."),
     ):
         hand.pick(label)
         assert told(hand) == (message, False)
     settle(hand)
     assert {"boxes", "boxes-rig.toml"} <= set(rows_of(hand))
-    assert sorted(path.name for path in (folder / "deeper").iterdir()) == [
-        "autocolor-0001.png",
-        "boxes",
-        "boxes-rig.toml",
-        "boxes.npz",
-        "boxes.png",
-        "triangle.obj",
-    ]
-    assert sorted(path.name for path in folder.iterdir()) == ["broken.obj", "deeper", "rig.toml", "wall"]
+    assert (folder / "deeper" / "boxes.png").exists()
     assert hint_of(hand, "save").startswith(
-        "Save to boxes/scene.toml and boxes.npz; new files go to inside/deeper"
+        "Save to boxes/scene.toml and deeper/boxes.npz; new files go to inside/deeper"
     )
     # From now on the scene has its own files, whichever folder is shown.
     hand.pick("refresh", 0.75)
@@ -312,15 +306,14 @@ def test_a_shown_folder_that_became_a_link_out_is_not_saved_to(hand: Hand, folde
 # Save as.
 
 
-def save_as(hand: Hand, *keys: str) -> None:
-    """Type a name for the scene by picking letters."""
-    hand.pick("save as")
-    for key in (*keys, "OK"):
-        hand.pick(key)
+def spell(hand: Hand, label: str, *keys: str) -> None:
+    """Type a text by picking letters."""
+    for each in (label, *keys, "OK"):
+        hand.pick(each)
 
 
 def test_a_scene_is_saved_under_a_name_of_picked_letters(hand: Hand, folder: Path) -> None:
-    save_as(hand, *"red-1")
+    spell(hand, "save as", *"red-1")
     assert told(hand) == (f"saved {Path('red-1/scene.toml')} and red-1.npz", False)
     assert {"red-1", "red-1.npz"} <= set(rows_of(hand))
     assert hand.viewer.caption.startswith("autocolor - red-1 - ")
@@ -329,7 +322,7 @@ def test_a_scene_is_saved_under_a_name_of_picked_letters(hand: Hand, folder: Pat
     assert read_scene(folder / "red-1").surfaces["low"].paint.object_color == (18, 52, 86)
     assert "boxes" not in rows_of(hand)
     # A free name is proposed, and taken by OK.
-    save_as(hand)
+    spell(hand, "save as")
     assert hand.scene.name == "red-1-2"
     assert (folder / "red-1-2" / "scene.toml").exists()
 
@@ -339,8 +332,6 @@ def test_a_pasted_name_saves_nothing_before_return(hand: Hand, folder: Path) -> 
     hand.viewer.session.clipboard = Clipboard(lambda _: True, lambda: "red car")
     hand.move(*hand.widget("save as").area[:2])
     hand.viewer.on_key("v", control=True)
-    assert hand.hint == "save as: red car_"
-    assert set(folder.iterdir()) == before
     # Nor does a pick elsewhere.
     hand.pick("mesh up")
     assert hand.hint != "save as: red car_"
@@ -356,7 +347,7 @@ def test_a_pasted_name_saves_nothing_before_return(hand: Hand, folder: Path) -> 
 
 def settle(hand: Hand) -> None:
     """Let everything happen that waits until nothing moves."""
-    for _ in range(TICKS_TO_EXPORT + 1):
+    for _ in range(TICKS_TO_REST + 12):
         hand.viewer.on_tick()
 
 
@@ -366,27 +357,11 @@ def row_of(hand: Hand, label: str) -> Choice:
     return row
 
 
-def test_an_image_is_exported_as_a_display_shows_it_and_never_over_a_file(hand: Hand, folder: Path) -> None:
-    row_of(hand, "smoothness").choose("1")
-    hand.pick("export")
-    assert told(hand) == ("exporting 640x480, smoothness 1 ...", False)
-    assert not (folder / "boxes.png").exists()
-    settle(hand)
-    assert told(hand) == ("saved boxes.png: 640x480, smoothness 1", False)
-    scene = hand.scene
-    assert (np.asarray(Image.open(folder / "boxes.png")) == image(scene, smooth=1)).all()
-    before = (folder / "boxes.png").read_bytes()
-    # The screen may be left at once.
-    hand.pick("export")
-    hand.turn_to("picture")
-    assert (folder / "boxes-2.png").exists()
-    assert (folder / "boxes.png").read_bytes() == before
-
-
-def test_an_image_is_exported_at_another_size_and_smoothness(hand: Hand, folder: Path) -> None:
-    hand.pick("other size")
-    for key in ("5", "x", "OK"):
-        hand.pick(key)
+def test_an_image_is_exported_at_a_size_and_smoothness_and_never_over_a_file(
+    hand: Hand, folder: Path
+) -> None:
+    assert row_of(hand, "size").names == ["640x480", "1920x1080", "3840x2160"]
+    spell(hand, "other size", *"5x")
     assert told(hand)[1]
     assert row_of(hand, "size").present == "640x480"
     hand.pick("cancel")
@@ -395,18 +370,46 @@ def test_an_image_is_exported_at_another_size_and_smoothness(hand: Hand, folder:
         settle(hand)
     assert told(hand)[1]
     assert not (folder / "boxes.png").exists()
-    hand.pick("other size")
-    for key in (*"60x40", "OK"):
-        hand.pick(key)
-    assert row_of(hand, "size").present == "60x40"
-    assert row_of(hand, "size").names == ["60x40", "640x480", "1280x960", "2560x1920"]
+    spell(hand, "other size", *"60x40")
     row_of(hand, "smoothness").choose("3")
     hand.pick("export")
+    assert told(hand) == ("exporting boxes, 60x40, smoothness 3 ...", False)
+    assert not (folder / "boxes.png").exists()
     settle(hand)
     assert told(hand) == ("saved boxes.png: 60x40, smoothness 3", False)
-    scene = hand.scene
-    save_image(folder / "expected.png", scene, size=(60, 40), smooth=3)
-    assert (folder / "boxes.png").read_bytes() == (folder / "expected.png").read_bytes()
+    save_image(folder / "expected.png", hand.scene, size=(60, 40), smooth=3)
+    # The screen may be left at once.
+    hand.pick("export")
+    hand.turn_to("picture")
+    for name in ("boxes.png", "boxes-2.png"):
+        assert (folder / name).read_bytes() == (folder / "expected.png").read_bytes()
+
+
+def test_every_camera_and_every_variant_is_exported(hand: Hand, folder: Path) -> None:
+    studio = hand.viewer.studio
+    row_of(hand, "size").choose("60x40")
+    for label in ("every camera", "every variant"):
+        hand.pick(label)
+        assert told(hand)[1]
+    for name, angle in (("front", 30), ("near/far", 20)):
+        studio.view(field_of_view=angle)
+        studio.save_view(name)
+    studio.keep_variant("A")
+    studio.recolor("low", object_color="#123456")
+    hand.pick("every camera")
+    assert told(hand) == ("exporting boxes-front, 60x40, smoothness 2, then 1 more ...", False)
+    settle(hand)
+    assert told(hand)[0] == "saved boxes-far.png, the last of 2: 60x40, smoothness 2"
+    hand.pick("every variant")
+    settle(hand)
+    scenes = {
+        "front": hand.scene.with_taken_view("front"),
+        "far": hand.scene,
+        "A": studio.variants["A"].scene,
+    }
+    for name, scene in scenes.items():
+        exported = np.asarray(Image.open(folder / f"boxes-{name}.png"))
+        assert np.array_equal(exported, image(scene, size=(60, 40)))
 
 
 # Dates.
@@ -433,95 +436,122 @@ def test_rows_show_when_a_file_was_changed(hand: Hand, folder: Path) -> None:
     for name in ("broken.obj", "rig.toml", "wall/scene.toml"):
         os.utime(folder / name, (0, datetime(2001, 6, 1).timestamp()))
     hand.pick("refresh")
-    rows = rows_of(hand)
-    assert {name: row.date for name, row in rows.items()} == {
+    assert {name: row.date for name, row in rows_of(hand).items()} == {
         "broken.obj": "2001",
         "rig.toml": "2001",
         "wall": "2001",
         "deeper": "",
     }
-    assert dates_in(rows["wall"]) == 1
-    assert dates_in(rows["deeper"]) == 0
-    assert date_of(folder / "gone.obj", "mesh") == ""
 
 
-def dates_in(row: FileRow) -> int:
-    """How many texts a row has beside its name and its kind."""
-    return len(row.items(lit=False)) - 3
+@pytest.mark.parametrize("letters", range(16, 20))
+def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: int) -> None:
+    row = FileRow("row", value="picture", shown="x" * letters, date="24 Nov").at(LEFT)
+    ground, name, note = row.items(lit=False)
+    assert not name.area.overlaps(note.area)
+    assert ground.area.covers(name.area)
+    assert ground.area.covers(note.area)
+    assert note.area.width == CHARACTER * len("24 Nov picture" if letters <= 17 else "picture")
 
 
 # Small pictures.
 
 
-def point_at(hand: Hand, name: str, recent: bool = False) -> None:
-    area = rows_of(hand, recent)[name].area
+def point_at(hand: Hand, name: str) -> Mapping[str, Tile]:
+    """Rest on a row; returns the tile of its larger picture, if there is one."""
+    area = rows_of(hand)[name].area
     hand.move(area.left + 40, area.top + 8)
+    settle(hand)
+    return tiles_of(hand, "preview")
 
 
-def small_picture(hand: Hand) -> Area | None:
-    """The area of the small picture; None without borrowed entries."""
-    content = hand.viewer.board.content
-    return content.items[-1].area if content.loads else None
+def test_recent_files_and_examples_have_small_pictures_in_borrowed_entries(folder: Path) -> None:
+    for name in ("broken.obj", "wall/scene.toml", "wall"):
+        note_file(folder / name)
+    hand = hand_at(folder, "file")
+    assert list(tiles_of(hand, "example")) == ["coupe", "bracket", "row", "pyramid"]
+    assert list(tiles_of(hand)) == ["wall", "broken.obj"]
+    settle(hand)
+    tiles = [*tiles_of(hand).values(), *tiles_of(hand, "example").values()]
+    assert [bool(tile.picture) for tile in tiles] == [True, False, True, True, True, True]
+    assert all(WORK.covers(tile.area) for tile in tiles)
+    assert not any(one.area.overlaps(other.area) for one, other in combinations(tiles, 2))
+    assert not np.array_equal(hand.display.entries, hand.viewer.studio.entries)
+    # Elsewhere the entries are those of the scene again.
+    hand.turn_to("picture")
+    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
 
 
-@pytest.mark.parametrize("recent", first(1, [True, False]))
-def test_the_picture_of_the_file_under_the_pointer_is_shown_in_borrowed_entries(
-    folder: Path, recent: bool
-) -> None:
+def test_the_file_under_the_pointer_has_a_larger_picture_in_place_of_the_examples(folder: Path) -> None:
     scene = wall_scene(name="wall")
     write_picture(folder / "wall.npz", scene, render(scene, (96, 48)))
-    (folder / "damaged.npz").write_bytes((folder / "wall.npz").read_bytes()[:2000])
-    note_file(folder / "wall.npz")
+    note_file(folder / "wall")
     hand = hand_at(folder, "file")
-    point_at(hand, "wall.npz", recent)
-    assert small_picture(hand) is None
-    settle(hand)
-    area = small_picture(hand)
-    assert area is not None
-    assert (area.width, area.height) == (96, 48)
-    assert THUMBNAIL.covers(area)
-    saved = read_picture(folder / "wall.npz")
-    shown = hand.display.field()[area.top : area.bottom + 1, area.left : area.right + 1]
-    errors = np.abs(shown.astype(int) - image(saved.scene, saved.picture).astype(int))
-    assert errors.max() <= 2
-    # On another row the entries are those of the scene again.
-    for name in ("wall", "damaged.npz"):
-        point_at(hand, name)
-        settle(hand)
-        assert small_picture(hand) is None
-    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
-    # What could not be read is not read at every tick, but once the folder is read again.
-    (folder / "damaged.npz").write_bytes((folder / "wall.npz").read_bytes())
-    settle(hand)
-    assert small_picture(hand) is None
+    tile = point_at(hand, "wall.npz")["wall.npz"]
+    assert tile.picture is not None
+    assert tile.frame.inset(1).covers(tile.picture.area)
+    assert not tiles_of(hand, "example")
+    left, top, right, bottom = tile.picture.area
+    shown = hand.display.field()[top : bottom + 1, left : right + 1].astype(int)
+    assert np.abs(shown - image(*read_picture(folder / "wall.npz"))).mean() < 3
+    assert not point_at(hand, "deeper")
+    assert tiles_of(hand, "example")
+
+
+def test_a_mesh_is_shown_as_it_will_be_opened_and_read_again_on_demand(hand: Hand, folder: Path) -> None:
+    pick(hand, "deeper")
+    name = "triangle.obj"
+    before = point_at(hand, name)[name].picture
+    hand.viewer.session.mesh_up = "y"
+    assert point_at(hand, name)[name].picture != before
+    hand.viewer.session.mesh_up = "z"
+    (folder / "deeper" / name).write_text("damaged")
+    assert point_at(hand, name)[name].picture == before
     hand.pick("refresh")
-    point_at(hand, "damaged.npz")
-    settle(hand)
-    assert small_picture(hand) is not None
+    assert point_at(hand, name)[name].picture is None
 
 
-@pytest.mark.parametrize(("lines", "elements"), [(400, 100), (20, 700)])
-def test_a_small_picture_of_any_shape_is_in_its_place(folder: Path, lines: int, elements: int) -> None:
-    scene = wall_scene(name="wall")
-    write_picture(folder / "wall.npz", scene, render(scene, (elements, lines)))
-    hand = hand_at(folder, "file")
-    point_at(hand, "wall.npz")
-    settle(hand)
-    ((first, colors),) = hand.viewer.board.content.loads
-    assert first > 0
-    assert first + len(colors) <= SCREENS.first
-    area = small_picture(hand)
-    assert area is not None
-    assert THUMBNAIL.inset(FRAME).covers(area)
-    assert area.width / area.height == pytest.approx(elements / lines, rel=0.2)
+def test_an_example_is_opened_from_elsewhere_and_saved_to_new_files(hand: Hand, folder: Path) -> None:
+    assert not hand.viewer.session.is_at_hand
+    before = recent_files()
+    pick(hand, "pyramid", "example")
+    assert (hand.scene.name, told(hand)) == ("pyramid", ("opened pyramid; undo goes back", False))
+    assert recent_files() == before
+    hand.turn_to("file")
+    hand.pick("save")
+    assert hand.viewer.studio.file == folder / "pyramid" / "scene.toml"
 
 
-@pytest.mark.parametrize("letters", range(16, 20))
-def test_a_long_name_is_whole_and_has_no_date_where_there_is_no_room(letters: int) -> None:
-    row = FileRow("row", value="picture", shown="x" * letters, date="24 Nov").at(
-        LEFT._replace(bottom=LEFT.top + 15)
-    )
-    ground, *texts = row.items(lit=False)
-    assert not any(one.area.overlaps(other.area) for one, other in combinations(texts, 2))
-    assert all(ground.area.covers(each.area) for each in texts)
-    assert dates_in(row) == (letters <= 17)
+def test_a_missing_library_of_materials_is_told(hand: Hand, folder: Path) -> None:
+    mesh = "mtllib car.mtl\nv 0 0 0\nv 1 0 0\nv 0 0 1\nusemtl body\nf 1 2 3\nf 1 2 2\n"
+    (folder / "deeper" / "car.obj").write_text(mesh)
+    pick(hand, "deeper")
+    pick(hand, "car.obj")
+    problem = "no library defines material 'body'; default colors are used"
+    repair = f"{problem}; copy 'car.mtl' to the folder of car.obj (and 1 more)"
+    assert told(hand) == (f"{repair}; undo goes back", True)
+    opened_first = History(*opened(Source(str(folder / "deeper" / "car.obj"))))
+    assert Viewer(opened_first, Ramtek9300()).message.endswith(repair)
+
+
+def test_a_session_that_was_not_closed_is_recovered_and_gone_back_from(hand: Hand, folder: Path) -> None:
+    session, studio = hand.viewer.session, hand.viewer.studio
+    session.autosave = Autosave()
+    other, left = Studio(wall_scene(name="wall"), Ramtek9300()), Autosave()
+    other.recolor("wall", object_color="red")
+    left.update(other.history)
+    left.leave()
+    # The files of another session may be outside of the folder.
+    hand.turn_to("picture")
+    hand.turn_to("file")
+    assert "recover" not in hand.labels
+    session.is_at_hand = True
+    studio.recolor("low", object_color="red")
+    for name in ("wall", "boxes"):
+        hand.turn_to("picture")
+        hand.turn_to("file")
+        hand.pick("recover")
+        assert (session.screen, hand.scene.name, len(studio.history.to_undo)) == (PICTURE, name, 1)
+        assert told(hand) == (f"{name} with all its steps; recover again goes back", False)
+        hand.viewer.clear()
+        assert hand.shows(hand.scene)

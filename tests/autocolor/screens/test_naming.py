@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.screens.variants_screen import VariantButton
+from autocolor.screens.gallery import Tile
 from tests.autocolor.screens.boxes import hand_at, told
 from tests.autocolor.screens.hand import Hand
 
@@ -40,7 +40,7 @@ def test_a_name_that_is_taken_is_refused_and_stays_to_be_typed_over(hand: Hand) 
 
 
 def test_a_second_click_on_the_name_of_a_light_renames_it(hand: Hand) -> None:
-    row = next(row for row in hand.viewer.board.widgets() if row.key == "light list.fill")
+    row = next(row for row in hand.viewer.board.widgets() if row.key == "light list. 2 fill")
     for _ in range(2):
         hand.click(row.area.left + 30, row.area.top + 5)
     hand.type("sky")
@@ -59,7 +59,7 @@ def test_a_camera_is_named_and_renamed_from_its_list(hand: Hand) -> None:
     for number in range(3):
         hand.viewer.session.edit(hand.scene.with_saved_view(f"view {number}"))
     hand.open_menu()
-    hand.choose("camera", hand.viewer.session.camera)
+    hand.choose("camera", "hero")
     hand.type("side")
     hand.press("return")
     assert [view.name for view in hand.scene.views] == ["side", "view 0", "view 1", "view 2"]
@@ -72,7 +72,7 @@ def test_a_variant_is_named_when_it_is_kept(hand: Hand) -> None:
     hand.type("dusk")
     hand.press("return")
     assert list(hand.viewer.studio.variants) == ["dusk"]
-    assert [each.label for each in hand.viewer.board.widgets() if isinstance(each, VariantButton)] == ["dusk"]
+    assert [each.label for each in hand.viewer.board.widgets() if isinstance(each, Tile)] == ["dusk"]
 
 
 def test_without_a_keyboard_nobody_is_asked(hand: Hand) -> None:

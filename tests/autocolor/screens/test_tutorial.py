@@ -126,7 +126,7 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
         lambda hand: all_differ(coupe().lights["key"].aim, key(hand).aim),
     ),
     "set a flap": (
-        [go("lights"), pick("flaps z", BOX), pick("z minimum", BOX)],
+        [go("lights"), pick("flaps", BOX), pick("z minimum", BOX)],
         lambda hand: cuts(key(hand).flaps.z),
     ),
     "switch a cone on and off": (
@@ -143,7 +143,7 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
         lambda hand: paint(hand).object_color in set(map(tuple, swatches().tolist())),
     ),
     "blend": (
-        [go("light blending"), lambda hand: hand.move(20, 20), pick("blend level", 0.5)],
+        [go("color mixing"), pick("blend bar", 0.5)],
         lambda hand: paint(hand).blend == pytest.approx(0.5, abs=0.01),
     ),
     "mix a ramp": (
@@ -225,7 +225,7 @@ def test_the_whole_tutorial_is_done_by_the_unit_alone(hand: Hand, tutorial: Tuto
     assert name_of(tutorial) == "flaps"
     hand.turn_to("picture")
     hand.turn_to("lights")
-    hand.pick("flaps y", 0.95)
+    hand.pick("flaps", 0.8)
     assert name_of(tutorial) == "flaps"
     hand.pick("y minimum", 0.95)
     assert name_of(tutorial) == "a cone"

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.arrays import half_up
+from autocolor.arrays import Words, half_up
 from autocolor.errors import UsageError
 from autocolor.scene.columns import BarRange
 from autocolor.widgets.bars import (
@@ -14,6 +16,7 @@ from autocolor.widgets.bars import (
     ComponentBar,
     LevelBar,
     PercentBar,
+    RampBar,
     bar_within,
     levels_along,
     number_text,
@@ -23,20 +26,11 @@ from autocolor.widgets.items import RED, WHITE, Area
 from autocolor.widgets.menu import WIDE_BAR
 from autocolor.widgets.widget import Place, Widget
 from ramtek_emu import Ramtek9300
-from tests.autocolor.widgets.drawing import checksum
+from tests.autocolor.widgets.drawing import checksum, draw_items
 
 STEPS = (0.001, 0.01, 0.05, 0.1, 0.125, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0)
 ROW = Area(505, 32, 639, 47)
-
-
-class Number:
-    """A number that a bar sets."""
-
-    def __init__(self, value: float) -> None:
-        self.value = value
-
-    def put(self, value: float) -> None:
-        self.value = value
+ANYWHERE = Place(0, 0)
 
 
 @given(st.sampled_from(STEPS), st.integers(-500, 500))
@@ -55,7 +49,6 @@ def test_a_whole_number_of_steps_is_written_and_read_again(step: float, count: i
         (0.3, 0.05, "0.30"),
         (-0.0, 0.1, "0.0"),
         (12.345, 1, "12.3"),
-        (0.78, 0.1, "0.78"),
         (1 / 3, 1 / 3, "0.3333333333"),
     ],
 )
@@ -83,40 +76,32 @@ def test_the_ends_of_a_bar_are_those_of_its_range_even_between_steps() -> None:
     assert bar.value_at(639) == 0.97
     assert 0.05 <= bar.value_at(ROW.right - 9) <= 0.97
     assert Bar("bar", area=ROW, value=1.0, low=1.0, high=1.0).share == 0.0
-    assert rounded_to(0.123, 0) == 0.123
-    typed = Bar("position x", area=ROW, value=-0.525909, step=0.1)
-    assert (typed.number, typed.typed.value) == ("-0.53", "-0.525909")
 
 
 def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
-    number = Number(0.5)
-    bar = Bar("bar", area=ROW, value=0.5, low=0.0, high=1.0, step=0.1, put=number.put)
+    found: list[float] = []
+    bar = Bar("bar", area=ROW, value=0.525909, low=0.0, high=1.0, step=0.1, put=found.append)
+    assert (bar.number, bar.typed.value) == ("0.53", "0.525909")
     bar.pick(Place(ROW.left, 40))
-    assert number.value == 0.0
-    bar.drag(Place(0, 0), Place(0, 0), Place(ROW.right, 40))
-    assert number.value == 1.0
+    bar.drag(ANYWHERE, ANYWHERE, Place(ROW.right, 40))
     bar.nudge(-1)
-    assert number.value == 0.4
     bar.typed.take("0,75")
-    assert number.value == 0.75
     with pytest.raises(UsageError) as refusal:
         bar.typed.take("much")
     assert str(refusal.value) == "bar must be a number, not 'much'; type one, such as 1.5"
-    assert number.value == 0.75
+    assert found == [0.0, 1.0, 0.4, 0.75]
 
 
 def test_a_number_that_can_be_absent_has_a_box() -> None:
-    flips: list[int] = []
-    number = Number(0.0)
-    present = Bar("bar", area=ROW, value=0.5, put=number.put, flip=lambda: flips.append(1))
-    absent = Bar("bar", area=ROW, value=None, put=number.put, flip=lambda: flips.append(2))
+    found: list[object] = []
+    present = Bar("bar", area=ROW, value=0.5, put=found.append, flip=lambda: found.append("off"))
+    absent = Bar("bar", area=ROW, value=None, put=found.append, flip=lambda: found.append("on"))
     present.pick(Place(ROW.right - 10, 40))
     absent.pick(Place(ROW.left + 20, 40))
-    assert flips == [1, 2]
     present.pick(Place(ROW.left, 40))
-    assert (flips, number.value) == ([1, 2], 0.0)
+    absent.nudge(1)
+    assert found == ["off", "on", 0.0]
     assert (absent.number, absent.share) == ("", 0.0)
-    assert absent.nudge(1) is None
 
 
 @pytest.mark.parametrize("area", [ROW, WIDE_BAR])
@@ -129,88 +114,69 @@ def test_a_bar_stays_in_its_area(area: Area, value: float | None, lit: bool) -> 
     assert all(area.covers(item.area) for item in items)
 
 
-AREA = Area(176, 24, 495, 47)
-FIRST = 192
-
-
-def component_bar(value: int, found: list[float] | None = None) -> ComponentBar:
-    found = [] if found is None else found
-    return ComponentBar("object, red", value=value, word=RED, letter="R", put=found.append, area=AREA)
-
-
-def drawn(bar: Widget, lit: bool = False) -> Ramtek9300:
-    display = Ramtek9300()
-    for item in bar.items(lit):
-        display.send(np.frombuffer(item.stream, np.uint16))
-    return display
-
-
-def test_each_element_is_a_value() -> None:
+def test_each_element_of_a_component_bar_is_a_value() -> None:
     found: list[float] = []
-    for element in range(FIRST, FIRST + 256):
-        component_bar(0, found).pick(Place(element, 30))
+    bar = ComponentBar("red", value=100, put=found.append, area=Area(176, 24, 495, 47))
+    for element in range(192, 192 + 256):
+        bar.pick(Place(element, 30))
     assert found == list(range(256))
-    component_bar(0, found).drag(Place(0, 0), Place(0, 0), Place(0, 0))
-    component_bar(0, found).drag(Place(0, 0), Place(0, 0), Place(600, 0))
-    assert found[-2:] == [0, 255]
-    for steps in (1, -3):
-        component_bar(100, found).nudge(steps)
-    assert found[-2:] == [101, 97]
+    for element in (0, 600):
+        bar.drag(ANYWHERE, ANYWHERE, Place(element, 0))
+    for steps in (1, -3, -200):
+        bar.nudge(steps)
+    assert found[256:] == [0, 255, 101, 97, 0]
 
 
 LYING = Area(8, 100, 495, 139)
 STANDING = Area(500, 24, 531, 439)
 
 
-def level_bar(levels: int, level: int = 0, upright: bool = False, found: list[int] | None = None) -> LevelBar:
-    found = [] if found is None else found
+def level_bar(levels: int, value: int = 0, upright: bool = False, found: list[int] | None = None) -> LevelBar:
     return LevelBar(
         "bar",
         area=STANDING if upright else LYING,
         words=np.arange(200, 200 + levels, dtype=np.uint16),
-        level=level,
-        put=found.append,
+        value=value,
+        most=levels - 1,
+        put=print if found is None else found.append,
         number="0.50" if upright else "",
         upright=upright,
     )
+
+
+def words_of(bar: Widget) -> Words:
+    """The words of a display on which a bar alone is drawn."""
+    display = Ramtek9300()
+    draw_items(display, bar.items(lit=False))
+    return display.words
 
 
 @given(length=st.integers(2, 640), levels=st.integers(2, 1007))
 def test_levels_rise_evenly_from_end_to_end(length: int, levels: int) -> None:
     found = levels_along(length, levels)
     assert found.tolist() == [half_up(place * (levels - 1) / (length - 1)) for place in range(length)]
-    assert (found[0], found[-1]) == (0, levels - 1)
 
 
 @pytest.mark.parametrize("levels", [2, 40, 488, 800])
-def test_a_lying_bar_shows_the_levels_from_the_left_and_an_upright_bar_from_below(levels: int) -> None:
-    for upright, strip in (
-        (False, Area(8, 100 + LANE, 495, 139 - LANE)),
-        (True, Area(500 + LANE, 24, 531, 439)),
-    ):
-        bar = level_bar(levels, upright=upright)
-        assert bar.strip == strip
-        words = drawn(bar).words[strip.top : strip.bottom + 1, strip.left : strip.right + 1]
-        along = levels_along(strip.height if upright else strip.width, levels)
-        wanted = along[::-1, None] if upright else along
-        assert np.array_equal(words, np.broadcast_to(200 + wanted, words.shape))
-
-
 @pytest.mark.parametrize("upright", [False, True])
-def test_a_pick_selects_the_level_that_is_shown_there_and_beyond_the_ends_the_last_one(upright: bool) -> None:
+def test_a_pick_selects_the_level_that_is_shown_there(levels: int, upright: bool) -> None:
     found: list[int] = []
-    bar = level_bar(60, upright=upright, found=found)
-    words = drawn(bar).words
-    strip = bar.strip
+    bar = level_bar(levels, upright=upright, found=found)
+    left, top, right, bottom = bar.strip
+    assert bar.strip == (Area(500 + LANE, 24, 531, 439) if upright else Area(8, 100 + LANE, 495, 139 - LANE))
+    words = words_of(bar)
+    # Levels rise from the left, or from below.
+    along = levels_along(bottom - top + 1 if upright else right - left + 1, levels)
+    wanted = along[::-1, None] if upright else along
+    strip = words[top : bottom + 1, left : right + 1]
+    assert np.array_equal(strip, np.broadcast_to(200 + wanted, strip.shape))
     for share in (0, 0.3, 0.77, 1):
-        element = strip.left + int(share * (strip.width - 1))
-        line = strip.top + int(share * (strip.height - 1))
+        element, line = left + int(share * (right - left)), top + int(share * (bottom - top))
         bar.pick(Place(element, line))
         assert found[-1] == words[line, element] - 200
-    bar.drag(Place(0, 0), Place(0, 0), Place(0, 1000))
-    assert found[-1] == 0
-    bar.drag(Place(0, 0), Place(0, 0), Place(1000, -5))
-    assert found[-1] == 59
+    for place in (Place(0, 1000), Place(1000, -5)):
+        bar.drag(ANYWHERE, ANYWHERE, place)
+    assert found[-2:] == [0, levels - 1]
 
 
 def test_the_number_of_an_upright_bar_is_a_part_of_its_handle() -> None:
@@ -223,19 +189,36 @@ def test_the_number_of_an_upright_bar_is_a_part_of_its_handle() -> None:
         assert bar.has(bar.area.left, bar.area.top)
 
 
+def test_a_drag_on_a_ramp_chooses_the_color_where_it_begins_and_moves_it() -> None:
+    done: list[tuple[str, int]] = []
+    bar = RampBar(
+        "ramp",
+        area=LYING,
+        value=2,
+        most=4,
+        put=lambda color: done.append(("choose", color)),
+        move=lambda to: done.append(("move", to)),
+    )
+    start, middle, end = Place(8 + 120, 120), Place(8 + 250, 120), Place(600, 90)
+    bar.drag(start, start, middle)
+    bar.drag(start, middle, end)
+    bar.pick(start)
+    bar.nudge(-1)
+    assert done == [("choose", 1), ("move", 2), ("move", 4), ("choose", 1), ("choose", 1)]
+    # There is a pointer at each color only if there is room.
+    assert [len(replace(bar, most=most).items(lit=False)) for most in (4, 53, 54)] == [9, 58, 4]
+
+
 def test_a_percentage_is_a_share_of_the_height() -> None:
     found: list[float] = []
     bar = PercentBar("percent", area=Area(600, 0, 635, 200), value=25.0, put=found.append)
     for line in (200, 100, 0, -9, 400):
         bar.pick(Place(610, line))
-    assert found == [0, 50, 100, 100, 0]
-    found.clear()
-    bar.drag(Place(0, 0), Place(0, 0), Place(0, 50))
+    bar.drag(ANYWHERE, ANYWHERE, Place(0, 50))
     bar.nudge(1)
     bar.nudge(-200)
-    assert found == [75, 26, 0]
-    words = drawn(bar).words
-    assert np.flatnonzero(words[:, 602] == WHITE).tolist() == [150]
+    assert found == [0, 50, 100, 100, 0, 75, 26, 0]
+    assert np.flatnonzero(words_of(bar)[:, 602] == WHITE).tolist() == [150]
 
 
 LEVELS = np.arange(900, 916, dtype=np.uint16)
@@ -246,15 +229,18 @@ COMPONENT = Area(20, 20, 339, 35)
 DRAWN = [
     (Bar("bar", area=ROW, value=0.3), 2248963053, 3937851439),
     (Bar("bar", area=ROW, value=0.3, flip=lambda: 0), 779451755, 1080164163),
-    (Bar("bar", area=ROW, value=None, flip=lambda: 0), 3860464718, 3947222848),
+    (Bar("bar", area=ROW, value=None, flip=lambda: 0), 3711837659, 1226440828),
     (Bar("bar", area=ROW, value=0.3, why_not="not now", word=RED), 2965018818, 496825007),
     (Bar("bar", area=WIDE_BAR, value=0.3, unit="degrees", word=RED), 1594393171, 1561743892),
-    (Bar("bar", area=ROW._replace(bottom=60), value=0.3), 1982306133, 1325038702),
     (ComponentBar("red", area=COMPONENT, value=77, letter="R", word=RED), 1317594259, 3894026590),
     (ComponentBar("red", area=COMPONENT, value=255, letter="R", word=RED), 463163399, 2395040169),
-    (LevelBar("levels", area=TALL, words=LEVELS, level=15, upright=True), 3206733488, 3190181059),
-    (LevelBar("levels", area=Area(20, 20, 219, 60), words=LEVELS, level=5), 1359616466, 3955108515),
-    (LevelBar("levels", area=TALL, words=LEVELS, level=5, number="5", upright=True), 3848373696, 4287666951),
+    (LevelBar("levels", area=TALL, words=LEVELS, value=15, most=15, upright=True), 3206733488, 3190181059),
+    (LevelBar("levels", area=Area(20, 20, 219, 60), words=LEVELS, value=5, most=15), 1359616466, 3955108515),
+    (
+        LevelBar("levels", area=TALL, words=LEVELS, value=5, most=15, number="5", upright=True),
+        3848373696,
+        4287666951,
+    ),
     (PercentBar("percent", area=TALL, value=30), 3844272778, 3672469405),
 ]
 

@@ -16,7 +16,6 @@ from autocolor.widgets.items import (
     WHITE,
     Area,
     Item,
-    SmallPicture,
     area_of,
     between,
     clipped,
@@ -189,13 +188,3 @@ def test_the_tip_of_a_pointer_is_at_its_place(towards: int) -> None:
     assert display.words[50, 100] == WHITE
     assert elements.mean() == pytest.approx(100 + across * 2.8)
     assert lines.mean() == pytest.approx(50 + down * 2.8)
-
-
-def test_a_small_picture_is_its_colors_in_borrowed_words() -> None:
-    full = np.arange(36, dtype=np.uint8).reshape(3, 4, 3)
-    small = SmallPicture(full, 12)
-    display = Ramtek9300(TINY)
-    for first, left, top in ((900, 3, 5), (900, 3, 5), (800, 20, 9)):
-        draw_items(display, [small.item(first, left, top)])
-        words = display.words[top : top + 3, left : left + 4]
-        assert (small.colors[words - first] == full).all()

@@ -28,7 +28,7 @@ from autocolor.scene.kinds import (
 from autocolor.scene.row_kinds import NamedRows, OneRowOf, Reference, References, nested, table_row
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
-from autocolor.widgets.rows import NAMES_A_PAGE, TableNames, World, rows_of
+from autocolor.widgets.rows import NAMES_A_PAGE, AddRow, TableNames, World, rows_of
 from autocolor.widgets.widget import Choice, Entry, Heading, Place, Switch, Widget
 
 MIX = Tier.MIX
@@ -148,7 +148,7 @@ def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
     kinds = {
         "name": Entry, "share": Bar, "tilt angle": Bar, "blades": Bar, "count": Bar, "reach": Bar,
         "on": Switch, "mode": Choice, "tint": Entry, "place x": Bar, "place y": Bar, "place z": Bar,
-        "finish": Choice, "grain": Bar, "density": Bar, "shutters x": Switch, "shutters z": Switch,
+        "finish": Choice, "grain": Bar, "density": Bar, "shutters": AddRow,
         "sheen": Switch, "follows": Choice, "post": Choice, "walls": Switch,
     }  # fmt: skip
     assert {label: type(row) for label, row in table.rows().items()} == kinds
@@ -164,18 +164,15 @@ def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
     assert given.lamp.facing == (0.5, 0, -1)
 
 
-@pytest.mark.parametrize(
-    "label", ["share", "blades", "reach", "place x", "place y", "place z", "grain", "density"]
-)
-def test_pointing_along_a_bar_puts_the_number_at_that_place(table: Table, label: str) -> None:
+@pytest.mark.parametrize("label", ["share", "blades", "reach", "place y", "grain", "density"])
+def test_pointing_along_a_bar_puts_the_number_at_that_place_alone(table: Table, label: str) -> None:
     before = table.bar(label).value
     table.bar(label).drag(Place(520, 8), Place(520, 8), Place(620, 8))
     after = table.bar(label)
     assert after.value is not None
     assert after.value != before
     assert after.low < after.value < after.high
-    changed = {key: value for key, value in vars(table.lamp).items() if value != vars(Lamp())[key]}
-    assert len(changed) == 1
+    assert sum(value != vars(Lamp())[key] for key, value in vars(table.lamp).items()) == 1
     assert type(table.lamp.blades) is int
 
 
@@ -243,11 +240,16 @@ def test_a_curve_over_angles_is_switched_and_has_a_bar_for_each_of_its_points(ta
     assert "at 40 degrees" not in table.rows()
 
 
-def test_an_absent_row_is_made_by_its_switch_and_then_switched(table: Table) -> None:
-    table.rows()["shutters x"].pick(Place(632, 8))
-    assert table.lamp.shutters == Shutters(x=Shutter())
-    assert {"x low", "x high"} <= set(table.rows())
-    assert "x on" not in table.rows()
+def test_an_absent_row_is_added_by_its_name_in_a_row_and_then_switched(table: Table) -> None:
+    # The names are at the right; a pick at their left adds the first.
+    for element, name, hint in ((628, "z", "Add shutters z. Upward."), (520, "x", "Add shutters x. Across.")):
+        row = table.rows()["shutters"]
+        assert row.hint_at(Place(element, 8)) == hint
+        row.pick(Place(element, 8))
+        assert {f"{name} low", f"{name} high"} <= set(table.rows())
+        assert f"{name} on" not in table.rows()
+    assert table.lamp.shutters == Shutters(Shutter(), Shutter())
+    assert "shutters" not in table.rows()
     table.rows()["shutters x"].pick(Place(632, 8))
     assert table.lamp.shutters.x == Shutter(on=False)
 
@@ -268,13 +270,11 @@ def test_a_number_without_limit_begins_beyond_everything_on_that_side() -> None:
 def test_the_end_beyond_everything_is_less_than_two_steps_away(
     low: float, size: float, margin: float
 ) -> None:
-    bottom, top = low - 1, low + size + 1
-    world = World((low,) * 3, (low + size,) * 3, everything=((bottom,) * 3, (top,) * 3))
+    world = World((low,) * 3, (low + size,) * 3, everything=((low - 1,) * 3, (low + size + 1,) * 3))
     for axis in "xyz":
-        step = world.range_of(axis).step
-        below, above = bottom - world.end_beyond(axis, -1, margin), world.end_beyond(axis, 1, margin) - top
-        for distance in (below, above):
-            assert margin - 1e-6 <= distance <= margin + 2 * step + 1e-6
+        below, above = (world.end_beyond(axis, sign, margin) for sign in (-1, 1))
+        for distance in (low - 1 - below, above - (low + size + 1)):
+            assert margin - 1e-6 <= distance <= margin + 2 * world.range_of(axis).step + 1e-6
 
 
 def test_each_row_by_name_has_a_box_and_below_it_its_rows() -> None:
@@ -327,22 +327,16 @@ class Posts(Table):
 
 
 @pytest.mark.parametrize(
-    ("label", "names", "shown", "taken"),
-    [
-        ("post", ("a", "b", "c"), ["a", "b", "c"], ["b", "c", "a"]),
-        ("follows", ("a", "sun", "none"), ["none", "sun", "a"], ["sun", "a", None]),
-    ],
+    ("label", "names", "taken"),
+    [("post", ("a", "b", "c"), ["b", "c", "a"]), ("follows", ("a", "sun", "none"), ["sun", "a", None])],
 )
 def test_a_name_is_chosen_among_those_of_its_table_or_none_if_it_may_be_absent(
-    label: str, names: Sequence[str], shown: list[str], taken: list[str | None]
+    label: str, names: Sequence[str], taken: list[str | None]
 ) -> None:
     menu, found = Posts(names=names), []
     for _ in names:
-        row = menu.rows()[label]
-        assert isinstance(row, Choice)
-        assert list(row.names) == shown
-        row.pick(NEXT)
-        found.append(getattr(menu.lamp, label))
+        menu.rows()[label].pick(NEXT)
+        found.append(vars(menu.lamp)[label])
     assert found == taken
 
 
@@ -362,23 +356,21 @@ def test_a_list_is_made_by_its_box_and_names_go_in_and_out_in_the_order_of_their
     assert menu.lamp.walls is None
 
 
-def test_many_names_come_in_pages() -> None:
+def test_many_names_come_in_pages_the_last_of_which_stands_for_those_that_went() -> None:
     names = [f"n{number}" for number in range(2 * NAMES_A_PAGE + 1)]
-    menu, seen = Posts(Lamp(walls=("n24",)), names), list[str]()
-    for title in ("1 to 12", "13 to 24", "25 to 25"):
-        page = menu.rows()["walls"]
+    menu, seen = Posts(Lamp(walls=("n1",)), names), list[str]()
+    for title in ("1 of 3", "2 of 3", "3 of 3"):
+        page = menu.rows()["page"]
         assert isinstance(page, Choice)
-        assert page.present == title
-        assert page.help == "The page of the 25 walls that is shown below; 1 are in the list."
+        assert (page.present, page.key) == (title, "walls.page")
+        assert page.help == f"The page of the {len(names)} walls that is shown below; 1 are in the list."
         seen += [label.strip() for label in menu.ticked if label != "walls"]
         page.pick(NEXT)
     assert seen == names
-    assert menu.lamp.walls == ("n24",)
     assert "  n0" in menu.ticked
-
-
-@pytest.mark.parametrize("count", [0, 1, 12, 13])
-def test_a_page_that_is_no_more_there_gives_way_to_the_last(count: int) -> None:
-    menu = Posts(Lamp(walls=()), [f"n{number}" for number in range(count)])
     menu.pages["walls"] = 5
-    assert list(menu.ticked)[-1] == (f"  n{count - 1}" if count else "walls")
+    for count in (NAMES_A_PAGE + 1, NAMES_A_PAGE, 1):
+        menu.names = names[:count]
+        assert list(menu.ticked)[-1] == f"  n{count - 1}"
+    menu.names = []
+    assert list(menu.ticked) == ["walls"]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from autocolor import Light, Scene, Surface, View, scene_of
-from autocolor.screens.light_and_view.handles import MovablePoint
+from autocolor.checks import Vector
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
-from autocolor.screens.light_and_view.orthographic_views import OrthographicViews
+from autocolor.screens.light_and_view.marks import MovablePoint, points_in
+from autocolor.screens.light_and_view.orthographic_views import OrthographicViews, fitted_views, shown_points
 from autocolor.screens.screen import Handle
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
@@ -31,7 +32,7 @@ def opened(scene: Scene, shows_all: bool = True) -> Hand:
     viewer.tell("")
     hand = Hand(viewer)
     if shows_all:
-        screen_of(hand).fit()
+        screen_of(hand).views = fitted_views(shown_points(scene))
         viewer.tell("")
     while viewer.board.content.idle():
         pass
@@ -44,6 +45,19 @@ def screen_of(hand: Hand) -> LightAndViewScreen:
     screen = hand.viewer.board.screen
     assert isinstance(screen, LightAndViewScreen)
     return screen
+
+
+def movable_of(handle: Handle) -> MovablePoint:
+    """The point that a handle moves."""
+    assert isinstance(handle.key, MovablePoint)
+    return handle.key
+
+
+def point_of(hand: Hand, movable: MovablePoint) -> Vector:
+    """The coordinates of a movable point now."""
+    screen = screen_of(hand)
+    others, ours = points_in(hand.scene, screen.views, movable.side, screen.chosen)
+    return next(each.point for each in (*others, *ours) if each.movable == movable)
 
 
 def handle_of(hand: Hand, movable: MovablePoint) -> Handle:

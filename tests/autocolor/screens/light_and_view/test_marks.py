@@ -5,54 +5,100 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Light, View
-from autocolor.arrays import Floats
-from autocolor.checks import Vector
+from autocolor import Flap, Flaps, Light, Scene, View
 from autocolor.screens.light_and_view.marks import (
+    AIM,
+    BETWEEN,
+    DIRECTION,
+    EYE,
+    FLAP,
+    LIGHT,
     RIM_SIDES,
-    Cross,
-    arrow,
+    TARGET,
+    MovablePoint,
     cone_outline,
-    flap_marks,
-    light_marks,
+    marks_in,
     numerals,
     picture_corners,
 )
-from autocolor.screens.light_and_view.orthographic_views import (
-    FRONT,
-    SIDES,
-    TOP,
-    ViewSide,
-)
-from autocolor.testing import directions, lights, numbers, vectors, views
+from autocolor.screens.light_and_view.orthographic_views import EDGE, FRONT, SIDE, SIDES, TOP, ViewSide
+from autocolor.screens.screen import Handle
+from autocolor.testing import lights, views
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.items import Area
-from tests.autocolor.screens.light_and_view.pointing import VIEWS
+from tests.autocolor.screens.light_and_view.pointing import FILL, KEY, VIEWS, boxed, movable_of
 
-places = st.tuples(st.floats(-300, 300), st.floats(-300, 300))
-
-
-def test_an_arrow_that_points_at_the_viewer_has_no_head_and_a_short_one_a_head_of_half_its_length() -> None:
-    assert arrow((5, 5), (5, 5)).tolist() == [[5, 5, 5, 5]]
-    assert [len(arrow((5, 5), (x, 5))) for x in (7.9, 8.0)] == [1, 3]
-    assert arrow((0, 0), (0, 8))[1, 1] == pytest.approx(4)
+PLACE = (1.5, -2.0, 3.0)
 
 
-def rim_of(light: Light, end: Vector) -> Floats:
-    """Many points of the rim: on the cone, as far from the light as the end."""
-    assert light.axis is not None
-    assert light.cone_angle is not None
-    axis = np.array(light.axis)
-    one = np.cross(axis, (0.3, -0.5, 0.8))
-    one /= np.linalg.norm(one)
-    turns = np.linspace(0, 2 * math.pi, 721)[:, None]
-    around = np.cos(turns) * one + np.sin(turns) * np.cross(axis, one)
-    angle, slant = math.radians(light.cone_angle), math.dist(end, light.position)
-    rim: Floats = np.array(light.position) + slant * (math.cos(angle) * axis + math.sin(angle) * around)
-    return rim
+def handles_in(scene: Scene, side: ViewSide, chosen: str = "key") -> list[Handle]:
+    return marks_in(scene, VIEWS, side, chosen, lambda point: None)[1]
+
+
+def test_everything_that_a_view_shows_can_be_taken_hold_of_there() -> None:
+    spot = Light("spot", (1.0, 2.0, 3.0), direction=(0.0, 0.0, -1.0))
+    for side in SIDES:
+        found = handles_in(boxed(KEY, FILL, spot), side)
+        assert all(side.area.has(each.element, each.line) for each in found)
+        assert {movable_of(each) for each in found} == {
+            MovablePoint(EYE, side),
+            MovablePoint(TARGET, side),
+            MovablePoint(LIGHT, side, "key"),
+            MovablePoint(AIM, side, "key"),
+            MovablePoint(LIGHT, side, "fill"),
+            MovablePoint(LIGHT, side, "spot"),
+            MovablePoint(DIRECTION, side, "spot"),
+        }
+
+
+def test_a_light_or_an_eye_outside_of_a_view_can_be_taken_hold_of_at_its_edge() -> None:
+    far = boxed(KEY.replace(position=(1e6, 0.0, 0.0))).with_view(eye=(0.0, 0.0, 1e6))
+    places = {movable_of(each): (each.element, each.line) for side in SIDES for each in handles_in(far, side)}
+    # In the side view, the light is far behind and within the view.
+    behind = tuple(map(round, VIEWS.position(SIDE, (1e6, 0.0, 0.0))))
+    assert places[MovablePoint(LIGHT, SIDE, "key")] == behind
+    assert places[MovablePoint(LIGHT, TOP, "key")][0] == TOP.area.inset(EDGE).right
+    assert places[MovablePoint(EYE, SIDE)][1] == SIDE.area.inset(EDGE).top
+
+
+def test_what_is_chosen_goes_before_the_others() -> None:
+    scene = boxed(*(Light(name, (0.0, 0.0, 1.0)) for name in ("a", "b", "c")))
+    for chosen in ("a", "b", "c"):
+        assert handles_in(scene, SIDE, chosen)[-1].key == MovablePoint(LIGHT, SIDE, chosen)
+    assert [movable_of(each).what for each in handles_in(scene, SIDE, "")[-2:]] == [TARGET, EYE]
+
+
+def test_the_line_of_a_flap_of_the_chosen_light_can_be_taken_hold_of_anywhere() -> None:
+    flaps = Flaps(x=Flap(-1.0, 2.0), y=Flap(minimum=-3.0), z=Flap(0.0, 1.0))
+    scene = boxed(KEY.replace(flaps=flaps), FILL.replace(flaps=flaps))
+    found = [each for each in handles_in(scene, TOP) if movable_of(each).what == FLAP]
+    upright = [each for each in found if each.key == MovablePoint(FLAP, TOP, "key", "x", "maximum")]
+    level = [each for each in found if each.key == MovablePoint(FLAP, TOP, "key", "y", "minimum")]
+    leftmost = [each for each in found if each.key == MovablePoint(FLAP, TOP, "key", "x", "minimum")]
+    assert len(found) == len(upright) + len(level) + len(leftmost)
+    assert {each.element for each in upright} == {round(VIEWS.position(TOP, (2.0, 0.0, 0.0))[0])}
+    assert {each.line for each in level} == {round(VIEWS.position(TOP, (0.0, -3.0, 0.0))[1])}
+    for places, first, last in (
+        ([each.line for each in upright], TOP.area.top, TOP.area.bottom),
+        ([each.element for each in level], TOP.area.left, TOP.area.right),
+    ):
+        gaps = [min(abs(place - along) for place in places) for along in range(first, last + 1)]
+        assert max(gaps) == BETWEEN // 2
+
+
+@pytest.mark.parametrize("follows", ["eye", "key"])
+def test_a_light_that_follows_is_put_where_it_is_in_the_world(follows: str) -> None:
+    light = MovablePoint(LIGHT, TOP, "spot")
+    spot = Light("spot", (0.5, 1.0, -0.5), direction=(0.0, 1.0, 0.0), follows=follows)
+    scene = light.put(boxed(KEY, spot), PLACE)
+    assert scene.lights_in_world["spot"].position == pytest.approx(PLACE)
+    turned = light._replace(what=DIRECTION).put(scene, (1.5, -2.0, 8.0)).lights_in_world["spot"]
+    assert turned.axis == pytest.approx((0.0, 0.0, 1.0), abs=1e-12)
+    aimed = light._replace(what=AIM).put(scene, (0.0, 1.0, 2.0)).lights_in_world["spot"]
+    assert aimed.aim == pytest.approx((0.0, 1.0, 2.0))
 
 
 def test_a_cone_that_points_at_the_viewer_is_a_circle() -> None:
@@ -63,47 +109,21 @@ def test_a_cone_that_points_at_the_viewer_is_a_circle() -> None:
         assert np.hypot(*(rim[:, :2] - TOP.area.middle).T) == pytest.approx(np.full(RIM_SIDES, 10.0))
 
 
-def test_a_cone_of_ninety_degrees_seen_from_the_side_is_a_line_across_and_of_180_none() -> None:
-    light = Light("key", (0.0, 0.0, 0.0), aim=(2.0, 0.0, 0.0), cone_angle=90.0)
-    outline = cone_outline(VIEWS, FRONT, light, (2.0, 0.0, 0.0)).reshape(-1, 2)
-    assert np.ptp(outline[:, 0]) == pytest.approx(0, abs=1e-9)
-    assert np.ptp(outline[:, 1]) == pytest.approx(40, rel=0.01)
-    everything = light.replace(cone_angle=180.0)
-    assert not any(len(cone_outline(VIEWS, side, everything, (2.0, 0.0, 0.0))) for side in SIDES)
+@pytest.mark.parametrize("angle", [30.0, 80.0, 120.0])
+def test_a_cone_seen_from_the_side_is_two_lines_that_open_by_its_angle(angle: float) -> None:
+    light = Light("key", (1.0, 0.0, 0.5), aim=(3.0, 0.0, 0.5), cone_angle=angle)
+    outline = cone_outline(VIEWS, FRONT, light, (3.0, 0.0, 0.5)).reshape(2, 2, 2)
+    at = np.array(VIEWS.position(FRONT, light.position))
+    assert outline[:, 0] == pytest.approx(np.stack([at, at]))
+    ends = outline[np.argsort(outline[:, 1, 1]), 1] - at
+    x, y = 20 * math.cos(math.radians(angle)), 20 * math.sin(math.radians(angle))
+    assert ends == pytest.approx(np.array([(x, -y), (x, y)]), abs=0.1)
 
 
-@given(vectors(), directions(), numbers(1, 179), st.sampled_from(SIDES))
-def test_the_lines_are_tangents_of_the_rim(
-    position: Vector, direction: Vector, cone_angle: float, side: ViewSide
-) -> None:
-    light = Light("key", position, direction=direction, cone_angle=cone_angle)
-    assert light.axis is not None
-    end = tuple((np.array(position) + 2 * np.array(light.axis)).tolist())
-    along = abs(float(np.dot(light.axis, side.toward)))
-    # The cone opens behind the light above 90 degrees.
-    half = math.radians(min(cone_angle, 180 - cone_angle))
-    assume(abs(math.acos(min(along, 1.0)) - half) > 1e-3)
-    assume(abs(cone_angle - 90) > 0.1)
-    outline = cone_outline(VIEWS, side, light, end)
-    rim = VIEWS.positions(side, rim_of(light, end))
-    at = np.array(VIEWS.position(side, position))
-    if math.acos(min(along, 1.0)) < half:
-        assert len(outline) == RIM_SIDES
-        return
-    assert len(outline) == 2
-    for start, touching in outline.reshape(2, 2, 2):
-        assert start == pytest.approx(at)
-        # It touches the rim, and the rim lies on one side of it.
-        assert np.hypot(*(rim - touching).T).min() < 0.2
-        step = (touching - start) / np.linalg.norm(touching - start)
-        beside = step[0] * (rim - start)[:, 1] - step[1] * (rim - start)[:, 0]
-        assert min(beside.max(), (-beside).max()) < 0.1
-
-
-def test_the_corners_are_those_of_the_picture_as_deep_as_the_target() -> None:
-    view = View((0.0, -2.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=90.0)
-    corners = picture_corners(view, (5.0, 0.0, 3.0), aspect=1.5)
-    assert corners == pytest.approx(np.array([(-3, 0, 2), (3, 0, 2), (3, 0, -2), (-3, 0, -2)]))
+def test_a_cone_of_180_degrees_and_a_light_without_a_cone_have_no_outline() -> None:
+    for angle in (180.0, None):
+        light = Light("key", (0.0, 0.0, 0.0), aim=(2.0, 0.0, 0.0), cone_angle=angle)
+        assert not any(len(cone_outline(VIEWS, side, light, (2.0, 0.0, 0.0))) for side in SIDES)
 
 
 @given(views())
@@ -115,37 +135,32 @@ def test_the_renderer_has_the_corners_at_the_corners_of_its_raster(view: View) -
     focal = focal_length(lines, elements, view.field_of_view)
     assert x / depth * focal == pytest.approx(np.array([-1, 1, 1, -1]) * elements / 2)
     assert y / depth * focal == pytest.approx(np.array([-1, -1, 1, 1]) * lines / 2)
+    assert depth == pytest.approx(1)
 
 
-@given(lights())
-def test_all_marks_are_within_their_area(light: Light) -> None:
-    for side in SIDES:
-        marks = [*light_marks(VIEWS, side, light), *(m.stroke for m in flap_marks(VIEWS, side, light))]
-        strokes = np.concatenate(marks)
-        assert (strokes >= [side.area.left, side.area.top] * 2).all()
-        assert (strokes <= [side.area.right, side.area.bottom] * 2).all()
-        assert len(marks[2]) == 0 or light.cone_angle is not None
+@given(lights(), st.sampled_from(SIDES), st.booleans())
+def test_all_marks_are_within_their_area(light: Light, side: ViewSide, is_chosen: bool) -> None:
+    chosen = light.name if is_chosen else ""
+    items, handles = marks_in(boxed(light), VIEWS, side, chosen, lambda point: None)
+    assert all(side.area.covers(item.area) for item in items)
+    assert all(side.area.has(handle.element, handle.line) for handle in handles)
 
 
 AREA = Area(0, 0, 247, 223)
 
-crosses = st.builds(Cross, st.integers(1, 16), st.integers(-20, 260), st.integers(-20, 240))
+crosses = st.tuples(st.integers(1, 16), st.integers(0, 247), st.integers(0, 223))
 
 
 def test_a_numeral_makes_way_for_what_is_there() -> None:
-    ((_, area),) = numerals([Cross(3, 100, 100)], AREA, [])
+    (area,) = numerals(((3, 100, 100),), AREA, ())
     assert area == (106, 86, 112, 94)
-    ((_, area),) = numerals([Cross(1, 100, 100)], AREA, [Area(103, 80, 120, 99)])
+    (area,) = numerals(((1, 100, 100),), AREA, (Area(103, 80, 120, 99),))
     assert not area.overlaps(Area(103, 80, 120, 99))
 
 
 @given(st.lists(crosses, max_size=16))
-def test_every_light_in_the_area_has_a_numeral_within_it(lights: list[Cross]) -> None:
-    corners = [Cross(10, element, line) for element, line in itertools.product((0, 247), (0, 223))]
-    beyond = [Cross(1, 248, 100), Cross(1, -1, 100), Cross(1, 100, 224), Cross(1, 100, -1)]
-    found = numerals([*corners, *beyond, *lights], AREA, [])
-    assert [cross for cross, _ in found] == [
-        *corners,
-        *(each for each in lights if AREA.has(each.element, each.line)),
-    ]
-    assert all(AREA.covers(area) for _, area in found)
+def test_every_light_in_the_area_has_a_numeral_within_it(lights: list[tuple[int, int, int]]) -> None:
+    corners = [(10, element, line) for element, line in itertools.product((0, 247), (0, 223))]
+    areas = numerals((*corners, *lights), AREA, ())
+    assert len(areas) == len(corners) + len(lights)
+    assert all(AREA.covers(area) for area in areas)

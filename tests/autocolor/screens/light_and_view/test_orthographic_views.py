@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Part, View, scene_of
-from autocolor.checks import LARGEST_COORDINATE, Vector
+from autocolor.checks import Vector
 from autocolor.screens.light_and_view.orthographic_views import (
     EDGE,
     FILLED,
@@ -17,12 +17,10 @@ from autocolor.screens.light_and_view.orthographic_views import (
     OrthographicViews,
     PointMark,
     ViewSide,
-    area_of_picture,
     fitted_views,
     shown_points,
 )
 from autocolor.testing import vectors
-from autocolor.widgets.items import Area
 from tests.small import cube, grid
 
 coordinates = st.floats(-1e6, 1e6).map(lambda value: value + 0.0)
@@ -97,13 +95,6 @@ def test_a_placed_coordinate_has_no_more_decimals_than_tell_the_pixel() -> None:
     assert moved == (4.05, 6.05, 0.5)
 
 
-def test_no_point_is_placed_beyond_the_largest_coordinate() -> None:
-    views = fitted_views(np.array([[-1e30, -1e30, -1e30], [1e30, 1e30, 1e30]]))
-    for side in SIDES:
-        placed = views.placed(side, (0.0, 0.0, 0.0), side.area.left, side.area.top)
-        assert max(map(abs, placed)) == LARGEST_COORDINATE
-
-
 @given(st.lists(vectors(), min_size=1, max_size=9), st.floats(-12, 12))
 def test_fitted_points_are_within_all_areas_with_space_left_on_all_sides(
     many: list[Vector], power: float
@@ -116,17 +107,15 @@ def test_fitted_points_are_within_all_areas_with_space_left_on_all_sides(
         assert (positions <= np.array([side.area.right, side.area.bottom]) - 16).all()
 
 
-def test_the_longest_extent_fills_its_view() -> None:
-    assert fitted_views(cube().coordinates).scale == pytest.approx(FILLED * 219)
-    assert fitted_views(cube().coordinates * (4, 1, 1)).scale == pytest.approx(FILLED * 247 / 4)
-    assert fitted_views(cube().coordinates * (4, 1, 1)).center == (2, 0.5, 0.5)
-
-
-def test_a_single_point_and_none_have_space_around_them() -> None:
-    views = fitted_views(np.array([[5.0, 6.0, 7.0]]))
-    assert views.center == (5, 6, 7)
-    assert views.scale == pytest.approx(FILLED * 219)
-    assert fitted_views(np.empty((0, 3))) == OrthographicViews((0.0, 0.0, 0.0), views.scale)
+def test_the_longest_extent_fills_its_view_and_a_single_point_has_space_around_it() -> None:
+    for points, center, scale in (
+        (cube().coordinates, (0.5, 0.5, 0.5), FILLED * 219),
+        (cube().coordinates * (4, 1, 1), (2, 0.5, 0.5), FILLED * 247 / 4),
+        (np.array([[5.0, 6.0, 7.0]]), (5, 6, 7), FILLED * 219),
+        (np.empty((0, 3)), (0, 0, 0), FILLED * 219),
+    ):
+        assert fitted_views(points).center == center
+        assert fitted_views(points).scale == pytest.approx(scale)
 
 
 def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next() -> None:
@@ -141,11 +130,6 @@ def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next(
     assert views.scale == pytest.approx(1e-30)
 
 
-def test_the_picture_has_its_shape_in_a_high_area_and_in_a_wide_one() -> None:
-    assert area_of_picture(Area(0, 0, 63, 99)) == Area(0, 26, 63, 73)
-    assert area_of_picture(Area(0, 0, 99, 47)) == Area(18, 0, 81, 47)
-
-
 VIEW = View((5.0, -6.0, 7.0), target=(0.5, 0.5, 0.25))
 
 
@@ -157,10 +141,9 @@ def test_the_object_the_eye_and_its_target_and_the_lights_and_their_aims_are_sho
         Light("beside", (0.0, 0.0, 1.0), follows="key"),
     ]
     found = shown_points(scene_of(cube(), view=VIEW, lights=lights))
-    assert [tuple(point) for point in found.tolist()] == [
-        (0, 0, 0), (1, 1, 1), VIEW.eye, VIEW.target, (1, 2, 3), (0, 0.5, 0.5), (4, 5, 6),
-        VIEW.eye, (0, 0.5, 1.5),
-    ]  # fmt: skip
+    assert {tuple(point) for point in found.tolist()} == {
+        (0, 0, 0), (1, 1, 1), VIEW.eye, VIEW.target, (1, 2, 3), (0, 0.5, 0.5), (4, 5, 6), (0, 0.5, 1.5)
+    }  # fmt: skip
 
 
 def test_a_stage_is_left_out_of_the_scale() -> None:

@@ -8,15 +8,11 @@ import numpy as np
 import pytest
 
 from autocolor import Paint, Scene, View
-from autocolor.mapping.legend import legend
+from autocolor.scene.orbit import moved, panned, turned
 from autocolor.screens.input import turn_between, wheel_ratio
 from autocolor.screens.keys import show_other
-from autocolor.screens.picture.over_picture import legend_items
-from autocolor.screens.picture.picture_edits import moved, panned, turned
 from autocolor.screens.session import Clipboard
 from autocolor.screens.viewer import Viewer
-from autocolor.sending import drawn_legend
-from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
@@ -60,32 +56,20 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     assert hand.hint == hand.viewer.board.screen.help
 
 
-def test_the_legend_of_another_state_is_not_moved(tmp_path: Path) -> None:
+def test_the_legend_is_picked_and_placed_but_not_that_of_another_state(tmp_path: Path) -> None:
     hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
     session = hand.viewer.session
     hand.click(600, 100)
-    assert hand.message == "the legend: drag it"
+    assert hand.message == "the legend: pick its new place"
+    hand.click(40, 120)
+    assert hand.handle("the legend") == (40, 120)
+    hand.press("Ctrl+Z")
     session.edit(session.scene.replace(scalar=None))
     before = session.scene
     show_other(hand.viewer)
-    hand.move(600, 100)
-    assert hand.viewer.board.content.hint(600, 100) == hand.viewer.board.screen.help
     hand.drag((600, 100), (500, 150))
     assert session.scene.view != before.view
     assert not session.news.is_warning
-
-
-def test_what_is_pointed_at_is_named_as_soon_as_the_picture_is_back(hand: Hand) -> None:
-    viewer = hand.viewer
-    viewer.session.turn_to("help")
-    # The first time the screen comes, and tells the way back; then that is taken away.
-    viewer.tell("")
-    viewer.tell("")
-    hand.move(*MIDDLE)
-    viewer.session.turn_to("reflectance")
-    viewer.on_key("a key that does nothing")
-    assert viewer.board.messages[-1].text == f"ball - paint, {level_at(hand, *MIDDLE)}"
-    assert hand.is_drawn_whole()
 
 
 def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> None:
@@ -133,7 +117,7 @@ KEYS: dict[str, tuple[str, Callable[[Scene], Scene]]] = {
     "Shift+S": ("surface floor", lambda scene: scene),
     "[": ("blend 0.55", lambda scene: scene.with_paint("paint", blend=0.55)),
     "]": ("blend 0.65", lambda scene: scene.with_paint("paint", blend=0.65)),
-    ".": ("", lambda scene: scene.with_view(angle=5.0)),
+    ".": ("angle 5 degrees", lambda scene: scene.with_view(angle=5.0)),
     "home": ("the view as opened", lambda scene: scene),
 }
 
@@ -168,18 +152,6 @@ def test_a_key_holds_the_exposure_and_releases_it(hand: Hand) -> None:
     hand.viewer.session.edit(hand.scene.replace(ambient=0.0))
     hand.press("e")
     assert hand.message.startswith("to hold the exposure, a surface must have different intensities")
-
-
-def test_a_screen_draws_the_same_legend_as_a_studio() -> None:
-    scene = boxes().with_scalar(name="z")
-    found = legend(Studio(scene, Ramtek9300()).display_image)
-    assert found is not None
-    drawn, by_items = Ramtek9300(), Ramtek9300()
-    drawn.send(drawn_legend(found))
-    for item in legend_items(found):
-        by_items.send(np.frombuffer(item.stream, np.uint16))
-    assert (drawn.words == by_items.words).all()
-    assert drawn.words.any()
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,11 @@ from pathlib import Path
 import pytest
 
 from autocolor import Scene, UsageError, View
-from autocolor.screens.picture.picture_edits import PictureEdits, moved, panned, seen_from, sides_of, turned
-from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
+from autocolor.scene.orbit import moved, panned, seen_from, sides_of, turned
+from autocolor.scene.stage import shape_of
+from autocolor.screens.picture import picture_edits as edits
+from autocolor.screens.picture.picture_edits import CLOSER, TURN
+from autocolor.screens.picture.picture_screen import PAN
 from autocolor.screens.steps import undo
 from autocolor.widgets.widget import Choice, Entry, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
@@ -55,6 +58,20 @@ def test_a_row_changes_the_view_which_can_be_gone_back_from(hand: Hand, label: s
     assert hand.scene.view == view_of(before) != before.view
     hand.press("Alt+Left")
     assert hand.scene.equals(before)
+
+
+def test_at_the_stage_a_turn_ends_and_the_message_says_why(hand: Hand) -> None:
+    session = hand.viewer.session
+    session.edit(session.scene.replace(stage="floor").with_view(eye=(0.0, -8.0, 4.0)))
+    floor, told = shape_of(session.scene.mesh, session.scene.parts).floor, []
+    for up in (-80, -5, 5):
+        session.tell("")
+        edits.turn(session, 3, up)
+        assert session.scene.view.eye[2] > floor
+        told.append(session.message)
+    assert told == ["", "the eye stays above the stage", ""]
+    edits.as_opened(session)
+    assert session.scene.view == session.studio.history.saved.scene.view
 
 
 def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None:
@@ -143,7 +160,7 @@ def test_a_stage_is_a_row_and_its_backdrop_has_two_colors(hand: Hand) -> None:
     assert hand.scene.backdrop_colors == (start.replace(stage="floor").backdrop_colors[0], (18, 52, 86))
     hand.viewer.session.choose_surface("stage")
     with pytest.raises(UsageError, match="the view fills with the object, not with its stage"):
-        PictureEdits(hand.viewer.session).rescale(True)
+        edits.rescale_surface(hand.viewer.session)
 
 
 def test_highlights_are_marked_while_the_pointer_rests_on_the_object(tmp_path: Path) -> None:

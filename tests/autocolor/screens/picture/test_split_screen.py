@@ -19,7 +19,7 @@ from tests.autocolor.screens.ball import ball_scene, hand_before, seen_on
 from tests.autocolor.screens.hand import Hand
 from tests.tables import first
 
-MARKED = slice(0, 24)
+MARKED = slice(0, 40)
 """The lines at the top, with the names of the states."""
 
 EDITS: dict[str, Callable[[Scene], Scene]] = {

@@ -7,15 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from autocolor import Scene
 from autocolor.mapping.ranges import BACKGROUND
 from autocolor.screens.picture.watching import MESSAGE, PICTURE_SECONDS, TICK_SECONDS
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
-from autocolor.testing import scenes
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
 from tests.small import SMALL, car
@@ -181,23 +177,6 @@ def test_a_page_covers_all_of_a_picture_that_comes_in(watching: Viewer, clock: C
     assert display_of(watching).words.tolist() == words.tolist()
     watching.on_key(page)
     assert is_whole(watching)
-
-
-@pytest.mark.thorough
-@given(scenes(), st.lists(st.floats(0, 0.4), max_size=8))
-def test_at_any_time_the_lines_that_are_there_are_those_of_the_picture(
-    scene: Scene, parts: list[float]
-) -> None:
-    clock = Clock()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("time.monotonic", clock)
-        viewer = Viewer(scene, Ramtek9300(SMALL))
-        viewer.on_key("w", typed="w")
-        for part in parts:
-            after(viewer, clock, part)
-            lines_there(viewer)
-        viewer.on_key("escape")
-        assert is_whole(viewer)
 
 
 def test_the_picture_is_watched_by_a_row_of_the_menu_and_any_pick_shows_it(tmp_path: Path) -> None:

@@ -1,9 +1,6 @@
-"""The edits themselves are tried through the viewer, in test_viewer.py."""
-
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,38 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, scene_of
-from autocolor.scene.defaults import OBJECT_COLORS, stage_top
+from autocolor.scene.orbit import moved, panned, seen_from, side_name, sides_of, target_of, turned
 from autocolor.scene.scene import FRONTS
-from autocolor.screens.picture.picture_edits import (
-    PictureEdits,
-    color_after,
-    moved,
-    panned,
-    seen_from,
-    side_name,
-    sides_of,
-    target_of,
-    turned,
-)
-from autocolor.screens.session import Session
-from autocolor.studio import Studio
-from ramtek_emu import Ramtek9300
 from tests.small import cube, grid, wall_scene
-
-colors = st.sampled_from(OBJECT_COLORS) | st.just("#123456")
-
-
-@given(colors, st.sampled_from([1, -1]))
-def test_steps_go_through_all_colors_and_the_own_one_and_back(own: str, step: int) -> None:
-    present, seen = own, []
-    for _ in range(len({own, *OBJECT_COLORS})):
-        assert color_after(color_after(present, own, step), own, -step) == present
-        present = color_after(present, own, step)
-        seen.append(present)
-    assert present == own
-    assert set(seen) == {own, *OBJECT_COLORS}
-    # A color that came from elsewhere is followed by the first.
-    assert color_after("#654321", own, 1) == ("#123456" if own == "#123456" else OBJECT_COLORS[0])
 
 
 def distance(view: View) -> float:
@@ -123,52 +91,27 @@ STAGED = scene_of(
     )
 )
 def test_an_eye_above_the_stage_stays_above_it(steps: list[tuple[float, float, str]]) -> None:
-    scene, top = STAGED, stage_top(STAGED.mesh, STAGED.parts)
-    assert top == 0.2
+    scene = STAGED
     for right, down, kind in steps:
         if kind == "tilt":
             view = scene.view.replace(angle=right)
         elif kind == "move":
-            view = moved(scene, 2 ** (right / 200), top)
+            view = moved(scene, 2 ** (right / 200))
         else:
-            view = (
-                turned(scene, right, -down, top)
-                if kind == "turn"
-                else panned(scene, right, down, 480, 640, top)
-            )
+            view = turned(scene, right, -down) if kind == "turn" else panned(scene, right, down, 480, 640)
         scene = scene.replace(view=view)
-        assert view.eye[2] > top
-
-
-def test_at_the_stage_a_turn_ends_and_the_session_says_why(tmp_path: Path) -> None:
-    display = Ramtek9300()
-    session = Session(Studio(STAGED, display), display, tmp_path)
-    edits = PictureEdits(session)
-    edits.turn(0, -80)
-    lowest = session.scene.view.eye[2]
-    assert 0.2 < lowest < 0.3
-    assert session.message == ""
-    edits.turn(3, -5)
-    assert session.message == "the eye stays above the stage"
-    assert session.scene.view.eye[2] == pytest.approx(lowest)
-    session.tell("")
-    edits.turn(0, 5)
-    assert session.scene.view.eye[2] > lowest
-    assert session.message == ""
-    edits.as_opened()
-    assert session.scene.view == STAGED.view
+        assert view.eye[2] > 0.2
 
 
 def test_a_pan_at_the_stage_stays_in_the_picture_plane_and_without_a_stage_goes_below() -> None:
     below = STAGED.replace(view=View((3, -4, 0.1), target=(0.5, 0.5, 0.5)))
     for scene in (STAGED.with_part("floor", stage=False), below):
-        top = stage_top(scene.mesh, scene.parts)
-        assert turned(scene, 0, -40, top).eye[2] < 0
-        assert panned(scene, 0, -900, 480, 640, top).eye[2] < 0
-    view = panned(STAGED, 30, -900, 480, 640, 0.2)
-    shift = np.array(view.eye) - np.array(STAGED.view.eye)
+        assert turned(scene, 0, -40).eye[2] < 0
+        assert panned(scene, 0, -900, 480, 640).eye[2] < 0
+    shift = np.array(panned(STAGED, 30, -900, 480, 640).eye) - np.array(STAGED.view.eye)
     assert float(shift @ STAGED.view.axes[2]) == pytest.approx(0, abs=1e-9)
-    free = np.array(panned(STAGED, 30, -900, 480, 640).eye) - np.array(STAGED.view.eye)
+    free_view = panned(STAGED.with_part("floor", stage=False), 30, -900, 480, 640)
+    free = np.array(free_view.eye) - np.array(STAGED.view.eye)
     assert float((shift - free) @ STAGED.view.axes[0]) == pytest.approx(0, abs=1e-9)
 
 
@@ -232,18 +175,3 @@ def test_sides_have_the_names_that_the_front_gives_them(front: Any) -> None:
     for side in ("front", "left", "back", "right"):
         toward = -seen[side].axes[2]
         assert side_name(scene, (round(toward[0]), round(toward[1]), 0.0)) == side
-
-
-def test_of_equal_named_views_the_one_that_was_taken_is_shown_and_removed(tmp_path: Path) -> None:
-    scene, display = wall_scene(lights=[]), Ramtek9300()
-    session = Session(Studio(scene, display), display, tmp_path)
-    for name in ("front", "door", "far"):
-        scene = scene.with_saved_view(name)
-    session.edit(scene)
-    edits = PictureEdits(session)
-    assert edits.camera == "front"
-    edits.take_view("door")
-    assert edits.camera == "door"
-    edits.remove_view()
-    assert [row.name for row in edits.session.scene.views] == ["front", "far"]
-    assert edits.camera == "front"
