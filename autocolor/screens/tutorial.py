@@ -183,7 +183,8 @@ class Tutorial:
             head, lines = f"{head}end of the tutorial", END
         else:
             head, lines = f"{head}{self._number + 1} of {len(LESSONS)}: {self.lesson.name}", self.lesson.lines
-            buttons.insert(0, ("skip", "Go on without doing this.", partial(self._go_on, False)))
+            # At the left, so that the other buttons stay in their places when it goes.
+            buttons.append(("skip", "Go on without doing this.", partial(self._go_on, False)))
         panel: list[Widget] = []
         right = area.right - 1
         for label, help, run in buttons:
