@@ -366,7 +366,7 @@ def marks_in(
     title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, LIGHT_GRAY)
     others, ours = points_in(scene, views, side, chosen)
     edges = edge_items(views, side, scene.view, target_of(scene))
-    items = [title, *edges, *point_items(views, others, False), *point_items(views, ours, True)]
+    items = [title, *edges, *point_items(views, side, others, False), *point_items(views, side, ours, True)]
     eyes = [sign_of(EYE, each.mark) for each in (*others, *ours) if each.movable.what == EYE]
     taken = [title.area, *(area_of(eye.reshape(-1, 2), limit=side.area) for eye in eyes)]
     handles = []
@@ -405,12 +405,12 @@ def inks_of(point: MarkedPoint, is_chosen: bool) -> tuple[int, int, int]:
 
 @lru_cache(maxsize=64)
 def point_items(
-    views: OrthographicViews, points: tuple[MarkedPoint, ...], are_chosen: bool
+    views: OrthographicViews, side: ViewSide, points: tuple[MarkedPoint, ...], are_chosen: bool
 ) -> Sequence[Item]:
-    """The items of the eye, of lights and of flaps; during a drag, most points stay the same."""
+    """The items of the eye, lights and flaps of one view; during a drag, most points stay the same."""
     layers: dict[int, list[Floats]] = {word: [] for word in (GRAY, LIGHT_GRAY, BLUE, WHITE, YELLOW)}
     for each in points:
-        what, side, light = each.movable.what, each.movable.side, each.light
+        what, light = each.movable.what, each.light
         sign, shaft, cone = inks_of(each, are_chosen)
         if what == FLAP:
             is_on = light is not None and getattr(light.flaps, each.movable.axis).on

@@ -164,7 +164,7 @@ TASKS: dict[str, tuple[Sequence[Act], Act]] = {
     "save": ([turn, go("file"), pick("save")], lambda hand: "*" not in hand.viewer.caption),
     "undo": ([recolor, menu(" ", 0.1)], lambda hand: hand.scene is coupe()),
     "go back several steps": (
-        [recolor, recolor, recolor, menu(" ", 0.5), pick("step 0")],
+        [recolor, recolor, recolor, menu(" ", 0.5), pick("  0  as the session began")],
         lambda hand: hand.scene is coupe(),
     ),
     "compare": ([recolor, menu("compare"), pick("compare")], lambda hand: hand.message == f"shown: {NOW}"),

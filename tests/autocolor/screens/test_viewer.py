@@ -524,12 +524,12 @@ class SlowDisplay:
 
     def send(self, words: Words) -> None:
         self.waiting.append(np.array(words))
-        self.most_waiting = max(self.most_waiting, sum(len(each) > 4_000 for each in self.waiting))
+        self.most_waiting = max(self.most_waiting, sum(len(each) > 1_000 for each in self.waiting))
 
     def receive(self, count: int) -> Words:
         for words in self.waiting:
             self.display.send(words)
-            self.pages += len(words) > 4_000
+            self.pages += len(words) > 1_000
         self.waiting.clear()
         return self.display.receive(count)
 

@@ -31,6 +31,7 @@ from tests.autocolor.screens.light_and_view.pointing import (
     boxed,
     handle_of,
     is_undone_at_once,
+    movable_of,
     opened,
     place_of,
     point_of,
@@ -188,11 +189,13 @@ def test_rescale_moves_nearer_and_fits_everything_the_object_and_a_surface() -> 
         assert hand.message == f"the views show {shown}"
 
 
-def test_the_views_stay_where_no_surface_is_in_use() -> None:
-    hand = opened(scene_of(Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())))
+def test_a_scene_without_polygons_and_lights_has_three_views_that_stay() -> None:
+    mesh = Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())
+    hand = opened(scene_of(mesh, lights=[]))
     views = screen_of(hand).views
     hand.pick("fit surface")
     assert screen_of(hand).views is views
+    assert {movable_of(each).what for each in hand.viewer.board.content.handles} == {EYE, TARGET}
 
 
 def test_angle_frame_a_drag_and_the_wheel_change_the_view_by_one_step_each() -> None:

@@ -52,6 +52,9 @@ def test_everything_that_a_view_shows_can_be_taken_hold_of_there() -> None:
             MovablePoint(LIGHT, side, "spot"),
             MovablePoint(DIRECTION, side, "spot"),
         }
+        # The arrow of a direction has a length on the screen.
+        lines = {movable_of(each).what: each.line for each in found if "spot" in each.label}
+        assert lines[DIRECTION] - lines[LIGHT] == (0 if side is TOP else 40)
 
 
 def test_a_light_or_an_eye_outside_of_a_view_can_be_taken_hold_of_at_its_edge() -> None:

@@ -43,12 +43,9 @@ def pixels(draw: st.DrawFn, side: ViewSide) -> tuple[int, int]:
 
 
 def test_each_view_shows_two_axes_as_on_an_engineering_drawing() -> None:
-    middle = TOP.area.middle
-    assert UNIT.position(TOP, (1, 2, 7)) == (middle[0] + 10, middle[1] - 20)
-    middle = FRONT.area.middle
-    assert UNIT.position(FRONT, (1, 7, 3)) == (middle[0] + 10, middle[1] - 30)
-    middle = SIDE.area.middle
-    assert UNIT.position(SIDE, (7, 2, 3)) == (middle[0] + 20, middle[1] - 30)
+    for side, right, up in ((TOP, 10, 20), (FRONT, 10, 30), (SIDE, 20, 30)):
+        element, line = side.area.middle
+        assert UNIT.position(side, (1, 2, 3)) == (element + right, line - up)
 
 
 @given(some_views(), sides, points, points | st.none())
