@@ -54,7 +54,6 @@ from autocolor.widgets.widget import (
     Choice,
     Entry,
     Gap,
-    Heading,
     Place,
     Widget,
 )
@@ -494,7 +493,7 @@ class Board:
         lit = self._lit_widget()
         listed = self.layout.listed
         shown = self.layout.rows if listed is None else listed.rows
-        rows = [each for each in shown if not isinstance(each, (Heading, Gap))]
+        rows = [each for each in shown if not isinstance(each, Gap)]
         if rows:
             start = next((n for n, each in enumerate(rows) if each is lit), -1 if step > 0 else 0)
             self._light(rows[(start + step) % len(rows)])

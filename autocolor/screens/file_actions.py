@@ -19,7 +19,7 @@ from autocolor.journal.autosave import Autosave, newest_session
 from autocolor.scene.scene import Scene
 from autocolor.screens.session import MIXING, PICTURE, Session
 from autocolor.sending import shown_colors
-from autocolor.widgets.widget import short_name
+from autocolor.widgets.items import fitted
 
 LONGEST_NAME: Final = 24
 """Assumed: letters of a scene's name in a message that must also say what to do."""
@@ -89,7 +89,7 @@ def bring_paints(session: Session, paints: Palette, name: str) -> None:
     """Let the user take colors from the paints of a file of this name; they replace earlier paints."""
     session.paints, session.paints_name = paints, name
     count = "a paint" if len(paints) == 1 else f"{len(paints):,} paints"
-    session.tell(f"{count} of {short_name(name, LONGEST_NAME)}: take them in color mixing")
+    session.tell(f"{count} of {fitted(name, LONGEST_NAME)}: take them in color mixing")
 
 
 def read_again(session: Session) -> None:
@@ -186,7 +186,7 @@ def unsaved_changes(session: Session) -> str:
     if history.is_changed:
         return "not saved: Ctrl+S saves" if session.has_keyboard else "not saved: save it"
     if history.left_unsaved:
-        return f"{short_name(history.left_unsaved[-1], LONGEST_NAME)} is not saved: undo goes back to it"
+        return f"{fitted(history.left_unsaved[-1], LONGEST_NAME)} is not saved: undo goes back to it"
     if history.unsaved_variants:
         return f"variant {history.unsaved_variants[-1]} is not saved: come back to it and save it"
     return ""

@@ -51,7 +51,7 @@ from autocolor.screens.gallery import (
 )
 from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
-from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, NIGHT, SLATE, YELLOW, Area, Item, text
+from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, NIGHT, SLATE, YELLOW, Area, Item, fitted, text
 from autocolor.widgets.menu import WORK, laid_out
 from autocolor.widgets.widget import (
     MARGIN,
@@ -64,7 +64,6 @@ from autocolor.widgets.widget import (
     Pair,
     Widget,
     page_choice,
-    short_name,
 )
 
 LEFT: Final = Area(7, WORK.top + 40, 247, WORK.bottom - 8)
@@ -220,7 +219,7 @@ class FileScreen(Screen):
 
     def _items(self) -> list[Item]:
         left, right, top = LEFT.left + 1 + MARGIN, RIGHT + FRAME, WORK.top + TEXT_DOWN
-        folder = short_name(self.session.shown(self.session.folder), CHARACTERS)
+        folder = fitted(self.session.shown(self.session.folder), CHARACTERS)
         items = [
             text("OPEN", left, top, YELLOW),
             text(folder, left, top + ROW_LINES, LIGHT_GRAY),
@@ -293,7 +292,7 @@ class FileScreen(Screen):
         session, scene, history = self.session, self.session.scene, self.session.studio.history
         changed = "changed" if history.is_changed else ""
         scale = f"{session.mesh_scale:g}"
-        folder = short_name(session.shown(session.folder), FOLDER_LETTERS)
+        folder = fitted(session.shown(session.folder), FOLDER_LETTERS)
         # Every scene file has the same name.
         files = " and ".join("/".join(Path(name).parts[-2:]) for name in history.files)
         saves = f"Save to {files}; new files go to" if files else "Save the scene and the picture in"
@@ -475,7 +474,7 @@ class FileRow(Button):
         _, top, right, _ = self.area
         room = CHARACTERS - LONGEST_KIND - LONGEST_DATE - 2
         note = f"{self.date} {self.value:>{LONGEST_KIND}}" if len(self.shown) <= room else self.value
-        name = short_name(self.shown, CHARACTERS - len(self.value) - 1)
+        name = fitted(self.shown, CHARACTERS - len(self.value) - 1)
         start = right + 1 - MARGIN - CHARACTER * len(note)
         ground = SLATE if lit else NIGHT
         return [*self.row(lit, name), text(note, start, top + TEXT_DOWN, LIGHT_GRAY, ground)]

@@ -33,11 +33,12 @@ from autocolor.widgets.items import (
     Area,
     Item,
     filled,
+    fitted,
     image,
     outline,
     text,
 )
-from autocolor.widgets.widget import Button, short_name
+from autocolor.widgets.widget import Button
 
 LINES: Final = 84
 ELEMENTS: Final = 112
@@ -183,5 +184,5 @@ class Tile(Button):
                 items.append(text(note, right + 1 - FRAME - width, bottom + 4, LIGHT_GRAY))
         else:
             items.append(text(note, (left + right + 1 - width) // 2, (top + bottom) // 2 - 4, LIGHT_GRAY))
-        name = short_name(self.label, room)
+        name = fitted(self.label, room)
         return [*items, text(name, left + FRAME, bottom + 4, YELLOW if self.is_chosen else WHITE)]

@@ -12,7 +12,7 @@ from autocolor.screens.screen import Content, Handle
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
 from autocolor.widgets.menu import MENU, STRIP, WIDE_BAR, NameList
-from autocolor.widgets.widget import Choice, Gap, Heading, Widget
+from autocolor.widgets.widget import Choice, Gap, Widget
 
 REACH: Final = 8
 """Assumed: elements or lines from a handle within which it is grabbed."""
@@ -84,7 +84,7 @@ class Layout:
     def widget_at(self, element: int, line: int) -> Widget | None:
         """The topmost widget at a place; headings and gaps are left out."""
         for widget in self.widgets:
-            if widget.has(element, line) and not isinstance(widget, (Heading, Gap)):
+            if widget.has(element, line) and not isinstance(widget, Gap):
                 return widget
         return None
 

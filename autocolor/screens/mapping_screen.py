@@ -43,6 +43,7 @@ from autocolor.widgets.items import (
     Area,
     Item,
     filled,
+    fitted,
     lines,
     outline,
     segments,
@@ -50,7 +51,7 @@ from autocolor.widgets.items import (
 )
 from autocolor.widgets.menu import WORK, Section
 from autocolor.widgets.rows import rows_of
-from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget, short_name
+from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget
 
 POINTS: Final = "points"
 
@@ -91,7 +92,7 @@ class MappingScreen(OverPicture):
             for number, (x, y) in enumerate(self._points)
         ]
         name, exposure = self.session.surface_name, self.session.scene.exposure
-        title = f"{short_name(name, MOST_CHARACTERS)}: {range_state(exposure, name)}" if name else ""
+        title = f"{fitted(name, MOST_CHARACTERS)}: {range_state(exposure, name)}" if name else ""
         items = [*content.items, *panel_items(title, *self._levels_and_shares(), self._points, self._touched)]
         return replace(
             content,

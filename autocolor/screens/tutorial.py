@@ -106,8 +106,8 @@ LESSONS: Final = (
     Lesson(
         "blend",
         (
-            "In the menu of colors, pick light blending; drag the handle of the",
-            "bar: above it, the color of the body goes over into the light's.",
+            "In the menu of colors, pick light blending. Drag the handle of the",
+            "bar: above it, the body takes the color of the light.",
         ),
         edited("surfaces", lambda row: [row.paint.blend]),
     ),

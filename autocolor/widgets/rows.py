@@ -28,14 +28,13 @@ from autocolor.scene.kinds import (
     Whole,
     in_digits,
 )
-from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References
+from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References
 from autocolor.widgets.bars import Bar, bar_within, rounded_to
 from autocolor.widgets.items import CHARACTER, Item
 from autocolor.widgets.widget import (
     MARGIN,
     Choice,
     Entry,
-    Heading,
     Place,
     Switch,
     Widget,
@@ -151,8 +150,8 @@ def rows_of(
 ) -> list[Widget]:
     """The rows for a row of a table, in the order of its columns; `put` is called with the changed fields.
 
-    With `columns`, only these columns have rows, in this order. Columns of `leave_out`, tables, held ranges
-    and absent vectors have no rows.
+    With `columns`, only these columns have rows, in this order. Columns of `leave_out`, tables, rows by
+    name, held ranges and absent vectors have no rows.
     """
     return list(_rows_in(_Menu(put, world), row, leave_out, columns))
 
@@ -214,24 +213,14 @@ def _rows_of_field(menu: _Menu, name: str, column: Column, value: Any) -> Iterat
         axis, edge = name if name in AXES else "", vars(value).get("edge_width", 0.0)
         # The menu is narrow: put only the row's own name before the names of its fields.
         yield from _rows_of_row(_Menu(put, menu.world, f"{name} ", axis, edge), shown, help, value)
-    elif isinstance(kind, NamedRows):
-        if value:
-            yield Heading(shown)
-        for row in value:
-            inside = _Menu(partial(_put_value, put, row.name), menu.world, INDENT)
-            for each in _rows_of_row(inside, row.name, help, row, ("name",)):
-                # Other named rows have the same labels.
-                yield replace(each, within=f"{name}.{row.name}", help=f"{row.name}: {each.help}")
 
 
-def _rows_of_row(
-    menu: _Menu, label: str, help: str, row: Row, leave_out: Sequence[str] = ()
-) -> Iterator[Widget]:
+def _rows_of_row(menu: _Menu, label: str, help: str, row: Row) -> Iterator[Widget]:
     """The rows of a nested row, after its own switch if it has one."""
     if "on" in fields_of(type(row)):
         is_on = vars(row)["on"]
         yield Switch(label, help, is_on=is_on, flip=partial(_put_value, menu.put, "on", not is_on))
-    yield from _rows_in(menu, row, (*leave_out, "on"))
+    yield from _rows_in(menu, row, ("on",))
 
 
 def _put_value(put: Put, name: str, value: object) -> object:

@@ -20,7 +20,6 @@ from autocolor.widgets.items import (
     NIGHT,
     SLATE,
     WHITE,
-    YELLOW,
     Area,
     Item,
     filled,
@@ -150,19 +149,6 @@ def lines_of_row(label: str, value: str) -> int:
     """The height of a row of a menu: a long value stands on a line of its own, below the label."""
     is_long = value and len(label) + 1 + len(value) > ROW_CHARACTERS
     return 2 * ROW_LINES if is_long else ROW_LINES
-
-
-@dataclass(frozen=True)
-class Heading(Widget):
-    """A line of text over some rows."""
-
-    def items(self, lit: bool) -> list[Item]:
-        left, top, *_ = self.area
-        room = (self.area.width - MARGIN) // CHARACTER
-        return [
-            filled(self.area, NIGHT),
-            text(fitted(self.label, room), left + MARGIN, top + TEXT_DOWN, YELLOW),
-        ]
 
 
 @dataclass(frozen=True)
@@ -448,7 +434,3 @@ def titled(noun: str, name: str) -> str:
     ('light key', 'light 2')
     """
     return name if name.startswith(noun) else f"{noun} {name}"
-
-
-short_name: Final = fitted
-"""An older name of `fitted`."""

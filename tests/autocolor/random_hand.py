@@ -7,7 +7,7 @@ import random
 from autocolor.screens.input import Chord
 from autocolor.screens.keys import BINDINGS
 from autocolor.screens.viewer import SCREENS, Viewer
-from autocolor.widgets.widget import Gap, Heading
+from autocolor.widgets.widget import Gap
 from ramtek_emu import Ramtek9300
 
 MENU_KEYS = ("tab", "up", "down", "left", "right", "return", "space", "escape", "backspace", "home", "end")
@@ -73,7 +73,7 @@ class RandomHand:
     def _place(self) -> tuple[int, int]:
         """A place on a widget, near a handle, at an edge, or anywhere."""
         chance, board = self._random.random(), self.viewer.board
-        widgets = [each for each in board.widgets() if not isinstance(each, (Gap, Heading))]
+        widgets = [each for each in board.widgets() if not isinstance(each, Gap)]
         handles = board.content.handles
         if chance < 0.6 and widgets:
             area = self._random.choice(widgets).area

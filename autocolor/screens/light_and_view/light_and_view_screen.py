@@ -33,7 +33,7 @@ from autocolor.screens.picture import picture_edits as edits
 from autocolor.screens.picture.over_picture import camera_rows, light_switches
 from autocolor.screens.screen import Content, Handle, Screen, Surroundings
 from autocolor.screens.session import Session
-from autocolor.widgets.items import CHARACTER_LINES, GRAY, SLATE, Item, filled, image, outline, text
+from autocolor.widgets.items import CHARACTER_LINES, LIGHT_GRAY, SLATE, Item, filled, image, outline, text
 from autocolor.widgets.menu import Section
 from autocolor.widgets.widget import Button, Choice, Pair, Steps, Widget
 
@@ -65,7 +65,7 @@ class LightAndViewScreen(Screen):
     name = "light and view"
     title = "light & view"
     word = "views"
-    help = "Pick a light, an aim or the eye, then its new place in the same view; or drag it"
+    help = "Drag a light, an aim or the eye, or pick it and then its new place in the same view"
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
@@ -143,7 +143,7 @@ class LightAndViewScreen(Screen):
             return image(sampled(words, area.height, area.width), *area[:2])
 
         sources = (points, scene.mesh, scene.parts) if is_mesh else (studio.words,)
-        title = text("view", PICTURE_AREA.left + 8, PICTURE_AREA.bottom - CHARACTER_LINES - 3, GRAY)
+        title = text("view", PICTURE_AREA.left + 8, PICTURE_AREA.bottom - CHARACTER_LINES - 3, LIGHT_GRAY)
         return [title, outline(area.inset(-1), SLATE), self._small.of(small, *sources)]
 
     def _hint(self, element: int, line: int) -> str:

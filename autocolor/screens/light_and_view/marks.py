@@ -363,7 +363,7 @@ def marks_in(
     """
     # As on an engineering drawing, the name of a view is below it.
     name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
-    title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, GRAY)
+    title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, LIGHT_GRAY)
     others, ours = points_in(scene, views, side, chosen)
     edges = edge_items(views, side, scene.view, target_of(scene))
     items = [title, *edges, *point_items(views, side, others, False), *point_items(views, side, ours, True)]

@@ -203,7 +203,7 @@ def test_a_value_is_computed_once_for_the_same_sources_and_again_if_it_failed() 
 
 PAGES = {
     "picture": 3004830101,
-    "light and view": 2076956024,
+    "light and view": 1914575561,
     "lights": 185925428,
     "reflectance": 3909965867,
     "mixing": 3292494096,

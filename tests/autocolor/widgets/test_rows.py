@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -25,11 +25,11 @@ from autocolor.scene.kinds import (
     text,
     vector,
 )
-from autocolor.scene.row_kinds import NamedRows, OneRowOf, Reference, References, nested, table_row
+from autocolor.scene.row_kinds import OneRowOf, Reference, References, nested, table_row
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
 from autocolor.widgets.rows import NAMES_A_PAGE, AddRow, TableNames, World, rows_of
-from autocolor.widgets.widget import Choice, Entry, Heading, Place, Switch, Widget
+from autocolor.widgets.widget import Choice, Entry, Place, Switch, Widget
 
 MIX = Tier.MIX
 WORLD = World((-1.0, -2.0, 0.0), (1.0, 2.0, 1.0))
@@ -63,21 +63,6 @@ class Smooth(Row):
 @table_row
 class Coarse(Row):
     size: int = column_of(Whole(1, 9), default=3, tier=MIX, help="How coarse.")
-
-
-@table_row
-class Hood(Row):
-    """One of any number, by name."""
-
-    noun: ClassVar[str] = "hood"
-
-    name: str = text(tier=MIX, help="Its name.")
-    point: Vector = coordinates(default=(0.0, 0.0, 0.0), tier=MIX, help="Where it is.")
-    width: float = number(default=0.0, at_least=0, unit=WORLD_UNITS, tier=MIX, help="How wide.")
-    length: float | None = number(
-        default=None, at_least=0, above=True, unit=WORLD_UNITS, tier=MIX, help="How long."
-    )
-    on: bool = boolean(default=True, tier=MIX, help="Whether it is used.")
 
 
 @table_row
@@ -115,7 +100,10 @@ class Lamp(Row):
         AngleCurveKind(0.1, ((0.0, 0.2), (40.0, 0.4), (90.0, 1.0))), default=None, tier=MIX, help="Its sheen."
     )
     curve: object = column_of(CurveKind({"linear": 1}), default="linear", tier=MIX, help="Its curve.")
-    hoods: tuple[Hood, ...] = column_of(NamedRows(Hood), default=(), tier=MIX, help="Its hoods.")
+    width: float = number(default=0.0, at_least=0, unit=WORLD_UNITS, tier=MIX, help="How wide.")
+    length: float | None = number(
+        default=None, at_least=0, above=True, unit=WORLD_UNITS, tier=MIX, help="How long."
+    )
     follows: str | None = column_of(Reference("lamps", "sun"), default=None, tier=MIX, help="What leads.")
     post: str = column_of(Reference("posts"), default="a", tier=MIX, help="Its post.")
     walls: tuple[str, ...] | None = column_of(References("walls"), default=None, tier=MIX, help="Its walls.")
@@ -149,7 +137,7 @@ def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
         "name": Entry, "share": Bar, "tilt angle": Bar, "blades": Bar, "count": Bar, "reach": Bar,
         "on": Switch, "mode": Choice, "tint": Entry, "place x": Bar, "place y": Bar, "place z": Bar,
         "finish": Choice, "grain": Bar, "density": Bar, "shutters": AddRow,
-        "sheen": Switch, "follows": Choice, "post": Choice, "walls": Switch,
+        "sheen": Switch, "width": Bar, "length": Bar, "follows": Choice, "post": Choice, "walls": Switch,
     }  # fmt: skip
     assert {label: type(row) for label, row in table.rows().items()} == kinds
     assert list(table.rows()) == list(kinds)
@@ -177,19 +165,19 @@ def test_pointing_along_a_bar_puts_the_number_at_that_place_alone(table: Table, 
 
 
 def test_bars_reach_the_whole_size_around_the_object_or_to_their_limits(table: Table) -> None:
-    given = Table(Lamp(facing=(0.0, 0.0, -1.0), hoods=(Hood("left"),)))
+    given = Table(Lamp(facing=(0.0, 0.0, -1.0)))
     for label, low, high in (
         ("place x", -1 - SIZE, 1 + SIZE),
         ("place y", -2 - SIZE, 2 + SIZE),
         ("reach", -2 - SIZE, 2 + SIZE),
         ("facing x", -1, 1),
         ("tilt angle", 0, 90),
-        ("  width", 0, SIZE),
+        ("width", 0, SIZE),
     ):
         assert (given.bar(label).low, given.bar(label).high) == pytest.approx((low, high))
     # A number that must be above 0 begins with a step.
-    given.bar("  length").pick(Place(632, 8))
-    assert given.lamp.hoods[0].length == given.bar("  length").step == given.bar("  length").low
+    given.bar("length").pick(Place(632, 8))
+    assert given.lamp.length == given.bar("length").step == given.bar("length").low
     nowhere = World((3.0, 3.0, 3.0), (3.0, 3.0, 3.0)).range_of("x")
     assert (nowhere.low, nowhere.high) == (2, 4)
 
@@ -275,32 +263,6 @@ def test_the_end_beyond_everything_is_less_than_two_steps_away(
         below, above = (world.end_beyond(axis, sign, margin) for sign in (-1, 1))
         for distance in (low - 1 - below, above - (low + size + 1)):
             assert margin - 1e-6 <= distance <= margin + 2 * world.range_of(axis).step + 1e-6
-
-
-def test_each_row_by_name_has_a_box_and_below_it_its_rows() -> None:
-    table = Table(Lamp(hoods=(Hood("left"), Hood("x", on=False))))
-    rows = rows_of(
-        table.lamp, table.put, WORLD, leave_out=[name for name in vars(table.lamp) if name != "hoods"]
-    )
-    inside = ["  point x", "  point y", "  point z", "  width", "  length"]
-    assert [row.label for row in rows] == ["hoods", "left", *inside, "x", *inside]
-    assert isinstance(rows[0], Heading)
-    assert len({row.key for row in rows}) == len(rows)
-    assert rows[8].help == "x: Where it is. In world units."
-    first, second = rows[1].at(AREA), rows[7].at(AREA)
-    assert isinstance(first, Switch)
-    assert isinstance(second, Switch)
-    assert (first.is_on, second.is_on) == (True, False)
-    second.pick(Place(632, 8))
-    assert table.lamp.hoods == (Hood("left"), Hood("x"))
-    point = rows[2]
-    assert isinstance(point, Bar)
-    point.put(0.5)
-    assert table.lamp.hoods == (Hood("left", point=(0.5, 0.0, 0.0)), Hood("x"))
-    # Its name is that of an axis, but its coordinates are of all three.
-    width = rows[11]
-    assert isinstance(width, Bar)
-    assert width.high == pytest.approx(SIZE)
 
 
 # Names of rows of other tables are chosen by pointing: one of them, or a list.
