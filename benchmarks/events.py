@@ -219,15 +219,10 @@ def background(bench: Bench) -> tuple[int, int]:
 
 def legend_of(bench: Bench) -> tuple[int, int]:
     """A place on the legend of a scalar, which is in the upper left corner of the picture."""
-    session, board = bench.viewer.session, bench.viewer.board
+    session = bench.viewer.session
     session.edit(session.scene.with_scalar(name="z", legend_place=(0.0, 0.0)))
     bench.viewer.tell("")
-    return next(
-        (element, line)
-        for line in range(0, 200, 4)
-        for element in range(0, 200, 4)
-        if board.content.hint(element, line).startswith("the legend")
-    )
+    return bench.place("the legend")
 
 
 def split(bench: Bench) -> None:
