@@ -333,7 +333,8 @@ class ObjectLines:
             self._found = {}
             is_stage = np.array([part.stage for part in scene.parts], np.bool_)
             is_stage &= not is_stage[list(mesh.parts_in_use)].all()
-            numbers = np.where(is_stage, STAGE, np.arange(len(is_stage)))
+            # A stage that is made is a part after all others.
+            numbers = np.append(np.where(is_stage, STAGE, np.arange(len(is_stage))), STAGE)
             return numbers, crease_edges(mesh, numbers)
 
         return self._object.of(compute, mesh, scene.parts)

@@ -276,6 +276,10 @@ def test_a_click_turns_to_the_lines_that_the_eye_sees_and_another_back_to_the_pi
     assert not np.array_equal(quarter(), lines)
     hand.viewer.session.edit(hand.scene.with_view(angle=0.0))
     assert np.array_equal(quarter(), lines)
+    # On a stage that is made, the object has the same lines.
+    hand.viewer.session.edit(hand.scene.replace(stage="bowl"))
+    assert (quarter()[lines == LIGHT_GRAY] == LIGHT_GRAY).all()
+    hand.viewer.session.edit(hand.scene.replace(stage="none"))
     hand.click(*MIDDLE)
     assert np.array_equal(quarter(), picture)
 
