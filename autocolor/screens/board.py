@@ -13,8 +13,6 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Bytes
-from autocolor.checks import Color
-from autocolor.scene.kinds import in_digits
 from autocolor.screens.input import MIDDLE, Gesture
 from autocolor.screens.layout import Layout, handles_near, opens
 from autocolor.screens.main_menu import last_rows, strip_of
@@ -92,7 +90,8 @@ class Board:
         """The gesture that began the drag, and the last one."""
         self._from_handle = Place(0, 0)
         """From the handle that is dragged to the pointer."""
-        self._pointer = Place(-1, -1)
+        self.pointer = Place(-1, -1)
+        """The place of the pointer; negative before it is moved."""
         self._layout: tuple[object, Layout] | None = None
         """The layout, and the state of the board that it was made for."""
 
@@ -102,11 +101,6 @@ class Board:
     def screen(self) -> Screen:
         """The screen that is shown."""
         return self.screens[self.session.screen]
-
-    @property
-    def names_in_strip(self) -> list[str]:
-        """The names of the screens that have a word in the strip, from the left."""
-        return [name for name, screen in self.screens.items() if screen.word]
 
     @property
     def has_menu(self) -> bool:
@@ -122,11 +116,6 @@ class Board:
     def is_dragging(self) -> bool:
         """Whether something is grabbed."""
         return self._grabbed is not None
-
-    @property
-    def lit(self) -> str:
-        """The key of the widget that is lit; empty if there is none."""
-        return self._lit
 
     @property
     def layout(self) -> Layout:
@@ -158,8 +147,8 @@ class Board:
         """The menu, the panels and the pointer, for the screen that is shown."""
         message = (item.area for item in self._message)
         above = (*((MENU, STRIP) if has_menu else ()), *(widget.area for widget in over), *message)
-        is_covered = any(area.has(*self._pointer) for area in above)
-        pointer = Place(-1, -1) if is_covered else self._pointer
+        is_covered = any(area.has(*self.pointer) for area in above)
+        pointer = Place(-1, -1) if is_covered else self.pointer
         return Surroundings(has_menu, not self.hides_panels, self._lit, pointer)
 
     def forget(self) -> None:
@@ -241,56 +230,26 @@ class Board:
     @property
     def sample(self) -> Sample | None:
         """The pixel of the picture under the pointer; None where something covers the picture."""
-        element, line = self._pointer
+        element, line = self.pointer
         is_free = self.layout.widget_at(element, line) is None and not self.is_covered(element, line)
         return self.content.sample(element, line) if is_free else None
-
-    @property
-    def text_to_copy(self) -> str:
-        """The typed text, the text of the row under the pointer, or the color there; empty without any."""
-        lit = self._lit_widget()
-        if self.typing.is_on:
-            return self.typing.text
-        if isinstance(lit, Entry):
-            return lit.value
-        color = self.content.color_at(*self._pointer)
-        return "" if color is None else in_digits(color)
-
-    def paste(self, text: str) -> None:
-        """Put a text into the typed text or the row under the pointer, or let the screen take it as a color.
-
-        Over a row with a proposed text, typing begins. Raises UsageError or InputError if it is refused.
-        """
-        lit = self._lit_widget()
-        if isinstance(lit, Entry) and lit.is_proposed and not self.typing.is_on:
-            self.typing.begin(lit)
-        if self.typing.is_on:
-            self.typing.insert(text)
-        elif isinstance(lit, Entry) and not lit.why_not:
-            lit.take(text)
-        else:
-            self.take_color(text)
-
-    def take_color(self, color: Color | str) -> None:
-        """Let the screen take a color, with the pointer where it is."""
-        self.content.take_color(color, *self._pointer)
 
     def take(self, gesture: Gesture) -> None:
         """Handle a gesture. Over another thing, a message gives way to the hint when it had its time."""
         hint = self._hint() if gesture.kind == "hover" and self.session.news_may_go else ""
-        self._pointer = Place(gesture.element, gesture.line)
+        self.pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
         if hint and hint != self._hint():
             self.session.shorten_news()
 
     def point_at(self, gesture: Gesture) -> None:
         """Move the pointer to the place of a gesture, and do nothing else."""
-        self._pointer = Place(gesture.element, gesture.line)
+        self.pointer = Place(gesture.element, gesture.line)
         self._hover(gesture)
 
     def clear(self) -> None:
         """Take the menu, the pointer and its hint away."""
-        self._pointer = Place(-1, -1)
+        self.pointer = Place(-1, -1)
         self._light(None)
         self.close()
 
@@ -308,12 +267,14 @@ class Board:
     def _light(self, widget: Widget | None) -> None:
         self._lit, self._lit_area = ("", NOWHERE) if widget is None else (widget.key, widget.area)
 
-    def _lit_widget(self) -> Widget | None:
+    @property
+    def lit(self) -> Widget | None:
+        """The widget that is lit: under the pointer, or reached by keys."""
         return self.layout.lit(self._lit, self._lit_area)
 
     def _hover(self, gesture: Gesture) -> None:
-        element, line = self._pointer
-        if self._folded is not None and self._folded[0] != self._pointer:
+        element, line = self.pointer
+        if self._folded is not None and self._folded[0] != self.pointer:
             self._folded = None
         if self._comes_and_goes:
             was_open = self.menu.is_open
@@ -332,7 +293,7 @@ class Board:
 
     def _pick(self, gesture: Gesture) -> None:
         self._hover(gesture)
-        element, line = self._pointer
+        element, line = self.pointer
         widget = self.layout.widget_at(element, line)
         if self._leaves_list() and not MENU.has(element, line):
             # Beside the menu, this pick does no more.
@@ -342,8 +303,8 @@ class Board:
             widget = self.layout.lit(self._folded[1], NOWHERE) or widget
         if widget is not None:
             self._let_go()
-            self._folded = (self._pointer, widget.key) if isinstance(widget, Section) else None
-            self.pick_widget(widget, self._pointer)
+            self._folded = (self.pointer, widget.key) if isinstance(widget, Section) else None
+            self.pick_widget(widget, self.pointer)
         elif self.is_covered(element, line):
             return
         elif self.held is not None:
@@ -363,10 +324,10 @@ class Board:
     def _leaves_list(self) -> bool:
         """Close the list if the pointer is neither on it nor on its row; returns whether that was so."""
         listed, row = self.layout.listed, self.layout.opened_row
-        if listed is None or listed.area.has(*self._pointer) or (row and row.has(*self._pointer)):
+        if listed is None or listed.area.has(*self.pointer) or (row and row.has(*self.pointer)):
             return False
         self._close_list()
-        self._hover(Gesture("hover", *self._pointer))
+        self._hover(Gesture("hover", *self.pointer))
         return True
 
     def pick_widget(self, widget: Widget, place: Place | None = None) -> None:
@@ -392,22 +353,22 @@ class Board:
         self._let_go()
         self._start = self._last = gesture
         self._leaves_list()
-        widget = self.layout.widget_at(*self._pointer)
+        widget = self.layout.widget_at(*self.pointer)
         self._light(widget)
         # Modifiers and the middle button are for the screen.
         is_plain = not gesture.shift and not gesture.control and gesture.button != MIDDLE
-        handle = self.handle_at(*self._pointer) if is_plain else None
+        handle = self.handle_at(*self.pointer) if is_plain else None
         if widget is not None:
             self._grabbed = None if widget.why_not else widget
             self.menu.use(self.session.screen, widget, self.layout.rows)
         elif handle is not None:
             self._grabbed = handle
             # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
-            element, line = self._pointer
+            element, line = self.pointer
             at_sign = Place(element - handle.element, line - handle.line)
             self._from_handle = at_sign if handle.sign.has(element, line) else Place(0, 0)
             handle.hold()
-        elif not self.is_covered(*self._pointer):
+        elif not self.is_covered(*self.pointer):
             self._grabbed = self.screen
 
     def _drag(self, gesture: Gesture) -> None:
@@ -417,7 +378,7 @@ class Board:
             self._grabbed = self.layout.now(self._grabbed)
             if self._grabbed is not None:
                 start = Place(self._start.element, self._start.line)
-                self._grabbed.drag(start, Place(last.element, last.line), self._pointer)
+                self._grabbed.drag(start, Place(last.element, last.line), self.pointer)
         elif isinstance(self._grabbed, Handle):
             element, line = self._from_handle
             self._grabbed.place(gesture.element - element, gesture.line - line)
@@ -428,12 +389,12 @@ class Board:
         self._let_go()
 
     def _wheel(self, gesture: Gesture) -> None:
-        widget = self.layout.widget_at(*self._pointer)
+        widget = self.layout.widget_at(*self.pointer)
         if widget is not None:
             if not widget.why_not:
                 self.menu.use(self.session.screen, widget, self.layout.rows)
                 widget.nudge(gesture.steps)
-        elif not self.is_covered(*self._pointer):
+        elif not self.is_covered(*self.pointer):
             self.content.wheel(gesture)
 
     # Keys.
@@ -450,7 +411,7 @@ class Board:
             self.close()
             return
         self.menu.is_pinned = self.menu.has_focus = True
-        if self._lit_widget() is None:
+        if self.lit is None:
             self._move_light(1)
 
     def escape(self) -> bool:
@@ -472,7 +433,7 @@ class Board:
 
     def key(self, name: str, typed: str) -> bool:
         """Take a key that is typed into the widget under the pointer, or moves in the menu."""
-        row = self._lit_widget()
+        row = self.lit
         if isinstance(row, Bar) and not row.why_not and typed and typed in NUMBERS:
             self.typing.begin(row.typed, typed)
             return True
@@ -490,7 +451,7 @@ class Board:
         return True
 
     def _move_light(self, step: int) -> None:
-        lit = self._lit_widget()
+        lit = self.lit
         listed = self.layout.listed
         shown = self.layout.rows if listed is None else listed.rows
         rows = [each for each in shown if not isinstance(each, Gap)]
@@ -507,15 +468,15 @@ class Board:
         if handle is not None:
             key = handle.key
             handle = next((each for each in self.content.handles if each.key == key), handle)
-        elif self._grabbed is None and self.layout.widget_at(*self._pointer) is None:
-            handle = self.handle_at(*self._pointer)
+        elif self._grabbed is None and self.layout.widget_at(*self.pointer) is None:
+            handle = self.handle_at(*self.pointer)
         place = None if handle is None else Place(handle.element, handle.line)
         # Cursors invert the pixels below them: two at one place would be invisible.
-        return None if place == self._pointer else place
+        return None if place == self.pointer else place
 
     def page(self) -> Page:
         """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
-        layout, content, lit = self.layout, self.content, self._lit_widget()
+        layout, content, lit = self.layout, self.content, self.lit
         items = list(content.items)
         for widget in (*content.widgets, *reversed(layout.over)):
             items += widget.items(widget is lit and not widget.why_not)
@@ -555,7 +516,7 @@ class Board:
         """Whether a hint is in the message line: beside a menu, else at handles and surfaces of a picture."""
         if self.layout.rows:
             return True
-        element, line = self._pointer
+        element, line = self.pointer
         if (
             self._grabbed is not None
             or line >= MESSAGE.top
@@ -570,12 +531,12 @@ class Board:
         return speaks and bool(surface_at(self.session.studio, element, line))
 
     def _hint(self) -> str:
-        lit, (element, line) = self._lit_widget(), self._pointer
+        lit, (element, line) = self.lit, self.pointer
         if lit is not None and lit is self.layout.opened_row:
             of, what = ("value", "the wide bar") if isinstance(lit, Bar) else ("name", "the list")
             return f"{lit.label}: pick a {of} on {what}; a pick on the row takes it away"
         if lit is not None:
-            return lit.hint_at(self._pointer)
+            return lit.hint_at(self.pointer)
         if self.held is not None:
             return f"{self.held.label}: pick its new place"
         if min(element, line) < 0 or self.is_covered(element, line):

@@ -171,7 +171,10 @@ def recover(session: Session) -> None:
     autosave.update(studio.history, at_once=True)
     other, unsaved = Autosave(folder), unsaved_changes(session)
     studio.go_on(recovered.history)
-    autosave.leave() if unsaved else autosave.end()
+    if unsaved:
+        autosave.leave()
+    else:
+        autosave.end()
     session.autosave = other
     back = "; recover again goes back" if unsaved else ""
     session.turn_to(PICTURE)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Final, Protocol
 
+from autocolor.checks import Color
 from autocolor.errors import UsageError
+from autocolor.scene.kinds import in_digits
 from autocolor.scene.orbit import sides_of
 from autocolor.screens.board import Board
 from autocolor.screens.file_actions import read_again, save, save_image
@@ -14,6 +16,7 @@ from autocolor.screens.picture.picture_edits import CLOSER, TURN
 from autocolor.screens.session import PICTURE, SENT, Session
 from autocolor.screens.steps import compare, end_comparing, redo, undo
 from autocolor.screens.surface.painting import blend, repaint, take_paint
+from autocolor.widgets.widget import Entry
 
 
 class Driven(Protocol):
@@ -40,15 +43,20 @@ def toggle(viewer: Driven, screen: str) -> None:
     viewer.session.turn_to(PICTURE if viewer.session.screen == screen else screen)
 
 
+def names_in_strip(viewer: Driven) -> list[str]:
+    """The names of the screens that have a word in the strip, from the left."""
+    return [name for name, screen in viewer.board.screens.items() if screen.word]
+
+
 def turn_along(viewer: Driven, number: int) -> None:
     """Turn to a screen of the strip, counted from 0 at the left; after the last comes the first."""
-    names = viewer.board.names_in_strip
+    names = names_in_strip(viewer)
     viewer.session.turn_to(names[number % len(names)])
 
 
 def place_in_strip(viewer: Driven) -> int:
     """The place of the present screen in the strip; that of the picture if it is not there."""
-    names = viewer.board.names_in_strip
+    names = names_in_strip(viewer)
     return names.index(viewer.session.screen) if viewer.session.screen in names else 0
 
 
@@ -104,14 +112,29 @@ def take_sample(viewer: Driven, is_color: bool) -> None:
     if sample is None or not sample.surface:
         raise UsageError("no surface is under the pointer; point at it in the picture")
     if is_color:
-        viewer.board.take_color(sample.color)
+        take_color(viewer.board, sample.color)
     else:
         take_paint(viewer.session, sample.surface)
 
 
+def take_color(board: Board, color: Color | str) -> None:
+    """Let the screen take a color, with the pointer where it is."""
+    board.content.take_color(color, *board.pointer)
+
+
+def text_to_copy(board: Board) -> str:
+    """The typed text, the text of the row under the pointer, or the color there; empty without any."""
+    if board.typing.is_on:
+        return board.typing.text
+    if isinstance(board.lit, Entry):
+        return board.lit.value
+    color = board.content.color_at(*board.pointer)
+    return "" if color is None else in_digits(color)
+
+
 def copy(viewer: Driven) -> None:
     """Copy the color or the text under the pointer to the clipboard; UsageError if there is none."""
-    text, clipboard = viewer.board.text_to_copy, viewer.session.clipboard
+    text, clipboard = text_to_copy(viewer.board), viewer.session.clipboard
     if not text:
         raise UsageError("nothing is there to copy; point at a color")
     if clipboard is None or not clipboard.copy(text):
@@ -132,7 +155,23 @@ def paste(viewer: Driven) -> None:
     text = "".join(letter for letter in line if letter.isprintable()).strip()
     if not text:
         raise UsageError("the clipboard has no text; copy a color first")
-    viewer.board.paste(text)
+    paste_text(viewer.board, text)
+
+
+def paste_text(board: Board, text: str) -> None:
+    """Put a text into the typed text or the row under the pointer, or let the screen take it as a color.
+
+    Over a row with a proposed text, typing begins. Raises UsageError or InputError if it is refused.
+    """
+    lit = board.lit
+    if isinstance(lit, Entry) and lit.is_proposed and not board.typing.is_on:
+        board.typing.begin(lit)
+    if board.typing.is_on:
+        board.typing.insert(text)
+    elif isinstance(lit, Entry) and not lit.why_not:
+        lit.take(text)
+    else:
+        take_color(board, text)
 
 
 FINE_TURN: Final = 1.0

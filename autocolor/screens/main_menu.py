@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 
 from autocolor.screens.screen import Screen
-from autocolor.screens.session import HISTORY, PICTURE, Session
+from autocolor.screens.session import BLENDING, HISTORY, MIXING, PICTURE, Session
 from autocolor.screens.steps import redo, switch_comparing, switch_split, undo
 from autocolor.widgets.menu import STRIP
 from autocolor.widgets.widget import Button, Cell, Gap, Pair, PanelButton, Widget
@@ -15,6 +15,8 @@ from autocolor.widgets.widget import Button, Cell, Gap, Pair, PanelButton, Widge
 def strip_of(session: Session, screens: Iterable[Screen]) -> list[Widget]:
     """The words that lead to the screens, side by side above the menu; the present screen is chosen."""
     named = [each for each in screens if each.word]
+    # Light blending is a place of color mixing.
+    shown = MIXING if session.screen == BLENDING else session.screen
     width = STRIP.width // len(named)
     return [
         PanelButton(
@@ -23,7 +25,7 @@ def strip_of(session: Session, screens: Iterable[Screen]) -> list[Widget]:
             within="strip",
             area=STRIP._replace(left=width * number, right=width * (number + 1) - 1),
             run=partial(session.turn_to, each.name),
-            is_chosen=each.name == session.screen,
+            is_chosen=each.name == shown,
         )
         for number, each in enumerate(named)
     ]

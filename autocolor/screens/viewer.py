@@ -203,7 +203,7 @@ class Viewer:
         elif kind == "wheel":
             # On each widget the wheel makes a step of its own.
             board.point_at(gesture)
-            self._do((WHEEL, board.lit), lambda: board.take(gesture), True, True)
+            self._do((WHEEL, board.lit and board.lit.key), lambda: board.take(gesture), True, True)
         elif kind == "drag":
             self._do((DRAG, self._drags), lambda: board.take(gesture), True, True)
         elif not (kind == "pick" and board.is_dragging) and (

@@ -10,6 +10,7 @@ from autocolor.checks import Color
 from autocolor.files.state import recent_colors
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, ROWS, swatches
+from autocolor.screens.keys import paste_text
 from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, SwatchField
 from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.items import Area
@@ -165,7 +166,7 @@ def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(han
 def test_keys_take_paint_after_paint_although_some_have_one_color(hand: PaintingHand) -> None:
     bring(hand, FEW)
     hand.press("tab")
-    while hand.viewer.board.lit != "paints":
+    while (lit := hand.viewer.board.lit) is None or lit.key != "paints":
         hand.press("down")
     taken = []
     for key in ("right", "right", "right", "right", "right", "left", "left"):
@@ -188,10 +189,10 @@ def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(h
         hand.press("return")
         assert hand.paint.object_color == color
         bring(hand, FEW)
-    board.paste("old red")
+    paste_text(board, "old red")
     assert hand.paint.object_color == (165, 32, 25)
     hand.leave()
-    board.paste("teal")
+    paste_text(board, "teal")
     assert hand.paint.object_color == yellow
 
 
