@@ -72,6 +72,7 @@ def open_file(session: Session, path: Path, as_example: bool = False) -> None:
         left_out = "" if links[0] == links[1] else ", without links to what it lacks"
         session.tell(f"the lights of {path.name}, fitted to {session.scene.name}{left_out}; undo goes back")
         return
+    before = studio.history.to_undo
     if kind == MESH:
         studio.open(path, up=session.mesh_up, scale=session.mesh_scale)
     else:
@@ -81,7 +82,8 @@ def open_file(session: Session, path: Path, as_example: bool = False) -> None:
     else:
         note_file(path.resolve())
     is_repaired = bool(studio.history.place.repairs)
-    parts = ["" if is_repaired else f"opened {path.name}", remark(session), "undo goes back"]
+    back = "it is the present scene" if studio.history.to_undo == before else "undo goes back"
+    parts = ["" if is_repaired else f"opened {path.name}", remark(session), back]
     session.tell("; ".join(filter(None, parts)), is_repaired)
 
 

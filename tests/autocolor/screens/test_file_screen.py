@@ -90,6 +90,9 @@ def test_a_file_is_opened_by_a_click_and_undo_brings_the_scene_back(hand: Hand) 
     pick(hand, "wall")
     assert hand.scene.name == "wall"
     assert told(hand) == ("opened wall; undo goes back", False)
+    hand.turn_to("file")
+    pick(hand, "wall")
+    assert told(hand) == ("opened wall; it is the present scene", False)
     assert hand.viewer.session.screen == PICTURE
     hand.open_menu()
     undo(hand)
