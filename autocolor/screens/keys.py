@@ -55,7 +55,7 @@ def turn_along(viewer: Driven, number: int) -> None:
 
 
 def place_in_strip(viewer: Driven) -> int:
-    """The place of the present screen in the strip; that of the picture if it is not there."""
+    """The place of the present screen in the strip; 0 if it has no word there."""
     names = names_in_strip(viewer)
     return names.index(viewer.session.screen) if viewer.session.screen in names else 0
 
