@@ -388,6 +388,10 @@ class Studio(Suggesting):
         if not after.present.scene.equals(self.scene):
             self._go(after, Show(name))
 
+    def rename_variant(self, name: str, to: str) -> None:
+        """Give a variant another name. Raises UsageError for an unknown name, and if `to` is in use."""
+        self._history.rename(name, to)
+
     def drop_variant(self, name: str) -> None:
         """Drop a variant. Raises UsageError for an unknown name."""
         self._history.drop(name)

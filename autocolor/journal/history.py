@@ -66,6 +66,13 @@ class Drop(NamedTuple):
     name: str
 
 
+class Rename(NamedTuple):
+    """A variant got another name; undo skips this step."""
+
+    name: str
+    to: str
+
+
 class Saved(NamedTuple):
     """A scene was saved; undo skips this step. `files` are saved to again, and have their stamps.
 
@@ -84,7 +91,7 @@ class Move(NamedTuple):
     steps: int = 1
 
 
-Step = Edit | Open | Show | Keep | Drop | Saved | Move
+Step = Edit | Open | Show | Keep | Drop | Rename | Saved | Move
 
 
 class History:
@@ -248,6 +255,13 @@ class History:
         self.variants = self.variants.without(name)
         self.steps.append(Drop(name))
 
+    def rename(self, name: str, to: str) -> None:
+        """Give a variant another name. Raises UsageError for an unknown name, and as `keep`."""
+        self.variants = self.variants.renamed(name, to)
+        if name in self._branches:
+            self._branches = self._branches - {name} | {to}
+        self.steps.append(Rename(name, to))
+
     def mark_saved(self, files: Mapping[str, str], is_own: bool = True) -> None:
         """Mark the current scene as saved to files, which have these stamps; it is saved to them again.
 
@@ -360,6 +374,12 @@ class Variants(Mapping[str, Opened]):
         if len(self._variants) >= MOST_VARIANTS:
             raise UsageError(f"there must be at most {MOST_VARIANTS} variants; drop one")
         return Variants({**self._variants, name: opened})
+
+    def renamed(self, name: str, to: str) -> Variants:
+        """These variants in their order, of which one has another name. Raises UsageError as the others."""
+        variant = self[name]
+        self.without(name).with_variant(to, variant)
+        return Variants({to if each == name else each: self[each] for each in self})
 
     def without(self, name: str) -> Variants:
         """The other variants. Raises UsageError for an unknown name."""

@@ -8,12 +8,12 @@
     {"step": "saved", "files": {"/home/ann/car/scene.toml": "77d0...", "/home/ann/car.npz": "c1e9..."}}
     {"step": "undo", "steps": 1}
 
-The other steps are `show` and `drop`, with the name of a variant; `redo`, `view_back` and `view_forward`,
-with a number of steps; and `on_disk`, which is like `saved` for files that get a backup before they are
-overwritten. An edit is the call of a method of the scene; its columns have the plain values of scene files.
-`mesh` is null if the mesh stays, empty for the mesh of the first scene, else the name of a folder beside the
-journal that has the mesh in a scene. The line of an opened scene has all its tables, so that only the mesh
-must still be in the files.
+The other steps are `show` and `drop`, with the name of a variant; `rename`, with the new name `to` as well;
+`redo`, `view_back` and `view_forward`, with a number of steps; and `on_disk`, which is like `saved` for files
+that get a backup before they are overwritten. An edit is the call of a method of the scene; its columns have
+the plain values of scene files. `mesh` is null if the mesh stays, empty for the mesh of the first scene, else
+the name of a folder beside the journal that has the mesh in a scene. The line of an opened scene has all its
+tables, so that only the mesh must still be in the files.
 
 A line counts once its newline is written. If the program was killed during a line, its part is ignored. A
 refused line is named by its number: remove it and the lines after it to recover the steps before.
@@ -39,7 +39,7 @@ from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_toml.scene_meshes import SOURCES
 from autocolor.files.scene_writing import write_scene
-from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Saved, Show, Step
+from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Rename, Saved, Show, Step
 from autocolor.journal.places import Opened, Source, checksum_of, opened
 from autocolor.journal.timeline import WAYS
 from autocolor.scene.columns import difference, fields_of, to_plain
@@ -125,6 +125,8 @@ def step_line(step: Step, start: Scene, meshes: MeshesBeside) -> str:
             return _line({"step": "open", **_scene_record(scene, source)})
         case Keep(name) | Show(name) | Drop(name):
             return _line({"step": type(step).__name__.lower(), "name": name})
+        case Rename():
+            return _line({"step": "rename", **step._asdict()})
         case Saved():
             return _line({"step": "saved" if step.is_own else "on_disk", "files": step.files})
         case Move(way, steps):
@@ -275,6 +277,7 @@ STEPS: Final[Mapping[str, Mapping[str, tuple[type, ...]]]] = {
     "keep": {"name": (str,)},
     "show": {"name": (str,)},
     "drop": {"name": (str,)},
+    "rename": {"name": (str,), "to": (str,)},
     "saved": {"files": (dict,)},
     "on_disk": {"files": (dict,)},
     **{way: {"steps": (int,)} for way in WAYS},
@@ -346,6 +349,8 @@ def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Pat
             history.open(*_opened(record, history))
         case "keep" | "drop":
             getattr(history, kind)(record["name"])
+        case "rename":
+            history.rename(record["name"], record["to"])
         case "show":
             history.go(history.shown(record["name"]), Show(record["name"]))
         case "saved" | "on_disk":

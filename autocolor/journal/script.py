@@ -20,7 +20,7 @@ import os
 from collections.abc import Mapping
 from typing import Final
 
-from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Saved, Show, Step
+from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Rename, Saved, Show, Step
 from autocolor.journal.journal import MeshesBeside, change_between
 from autocolor.journal.places import Source, checksum_of
 from autocolor.scene.columns import fields_of, to_plain
@@ -66,6 +66,8 @@ def step_statement(step: Step, start: Scene, meshes: MeshesBeside) -> str:
             return f"studio.open({_arguments(os.path.abspath(source.path), **_options(source), **tables)})"
         case Keep(name) | Show(name) | Drop(name):
             return f"studio.{type(step).__name__.lower()}_variant({literal(name)})"
+        case Rename(name, to):
+            return f"studio.rename_variant({literal(name)}, {literal(to)})"
         case Saved():
             return f"studio.mark_saved({literal(step.files)})"
         case Move(way, steps):

@@ -30,12 +30,13 @@ def name_view(session: Session, name: str, is_new: bool = False) -> None:
     _ask(session, "camera", name, rename, is_new)
 
 
-def name_variant(session: Session, name: str) -> None:
-    """Ask for a name of a variant that was just kept."""
+def name_variant(session: Session, name: str, choose: Callable[[str], object]) -> None:
+    """Ask for a name of a variant, and choose the variant by it."""
 
     def rename(new: str) -> None:
-        session.studio.keep_variant(new)
-        session.studio.drop_variant(name)
+        if new != name:
+            session.studio.rename_variant(name, new)
+        choose(new)
 
     _ask(session, "variant", name, rename)
 

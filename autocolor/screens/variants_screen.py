@@ -99,8 +99,8 @@ class VariantsScreen(Screen):
         )
 
     def _tile(self, name: str) -> Tile:
-        help, run = f"Variant {name}: a click chooses it", partial(self._choose, name)
-        return Tile(name, help, run=run, is_chosen=name == self._present)
+        help = f"Variant {name}: a click chooses it, another renames it"
+        return Tile(name, help, run=partial(self._pick, name), is_chosen=name == self._present)
 
     def _small_picture(self, scene: Scene) -> Small:
         try:
@@ -157,13 +157,18 @@ class VariantsScreen(Screen):
             rows.append(page_choice(help, page, pages, partial(setattr, self, "_page")))
         return rows
 
+    def _pick(self, name: str) -> None:
+        if name == self._present:
+            name_variant(self.session, name, self._choose)
+        self._choose(name)
+
     def _choose(self, name: str) -> None:
         self._chosen = name
         self._page = list(self.session.studio.variants).index(name) // ON_PAGE
 
     def _keep(self) -> None:
         self._keep_as(None)
-        name_variant(self.session, self._chosen)
+        name_variant(self.session, self._chosen, self._choose)
 
     def _keep_as(self, name: str | None) -> None:
         name = self.session.studio.keep_variant(name)

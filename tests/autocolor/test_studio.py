@@ -982,7 +982,11 @@ def test_a_variant_is_shown_by_one_step() -> None:
     studio.undo()
     assert held(display) == night
     assert list(studio.variants) == ["A", "night"]
-    studio.drop_variant("A")
+    studio.rename_variant("A", "dawn")
+    assert list(studio.variants) == ["dawn", "night"]
+    with pytest.raises(UsageError):
+        studio.rename_variant("dawn", "night")
+    studio.drop_variant("dawn")
     assert list(studio.variants) == ["night"]
     with pytest.raises(UsageError):
         studio.show_variant("A")

@@ -65,6 +65,7 @@ moves = (
     | st.tuples(st.just("open"), st.sampled_from(["car", "box.obj"]), st.sampled_from(["materials", "parts"]))
     | st.tuples(st.just("mesh"), st.booleans(), st.sampled_from([CAR, LARGER, OTHER]))
     | st.tuples(st.sampled_from(["keep", "show", "drop"]), st.sampled_from("AB"), st.none())
+    | st.tuples(st.just("rename"), st.sampled_from("AB"), st.sampled_from("AC"))
     | st.tuples(st.sampled_from(["hold", "release", "saved"]), st.none(), st.none())
 )
 
@@ -89,6 +90,8 @@ def take_move(studio: Studio, move: tuple[str, Any, Any], folder: Path) -> None:
             studio.edit(value, same_step=what)
         elif kind in ("keep", "show", "drop"):
             getattr(studio, f"{kind}_variant")(what)
+        elif kind == "rename":
+            studio.rename_variant(what, value)
         elif kind in ("hold", "release"):
             getattr(studio, f"{kind}_exposure")()
         elif kind == "saved":

@@ -127,7 +127,8 @@ def test_lines_are_steps_in_json(tmp_path: Path, box: Source, begin: dict[str, o
     history.take(history.scene.with_view(angle=5), same_step=True)
     history.keep("it's")
     history.go(history.shown("it's"), Show("it's"))
-    history.drop("it's")
+    history.rename("it's", "B")
+    history.drop("B")
     history.mark_saved({"/box\udcff.npz": "9f"})
     history.move("undo")
     path = journal_of(history, tmp_path)
@@ -138,7 +139,8 @@ def test_lines_are_steps_in_json(tmp_path: Path, box: Source, begin: dict[str, o
         ' "joins": false}',
         '{"step": "keep", "name": "it\'s"}',
         '{"step": "show", "name": "it\'s"}',
-        '{"step": "drop", "name": "it\'s"}',
+        '{"step": "rename", "name": "it\'s", "to": "B"}',
+        '{"step": "drop", "name": "B"}',
         '{"step": "saved", "files": {"/box\\udcff.npz": "9f"}}',
         '{"step": "undo", "steps": 1}',
     ]

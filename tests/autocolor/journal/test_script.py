@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Scene, Studio, read_scene
-from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Saved, Show, Step
+from autocolor.journal.history import Drop, Edit, History, Keep, Move, Open, Rename, Saved, Show, Step
 from autocolor.journal.journal import MeshesBeside
 from autocolor.journal.places import Source, checksum_of, opened
 from autocolor.journal.script import literal, script_of, step_statement
@@ -164,11 +164,19 @@ def test_steps_of_files_and_variants_have_lines_of_their_own(tmp_path: Path) -> 
     assert line.startswith(begin)
     assert line.endswith(f", checksum='{checksum_of(CAR)}')")
     back = [Move("undo"), Move("redo", 3), Move("view_back")]
-    steps: list[Step] = [Keep("A"), Show("it's"), Drop("A"), Saved(CAR, {"/car.npz": "9f"}), *back]
+    steps: list[Step] = [
+        Keep("A"),
+        Show("it's"),
+        Drop("A"),
+        Rename("B", "C"),
+        Saved(CAR, {"/car.npz": "9f"}),
+        *back,
+    ]
     assert [step_statement(each, CAR, beside) for each in steps] == [
         "studio.keep_variant('A')",
         'studio.show_variant("it\'s")',
         "studio.drop_variant('A')",
+        "studio.rename_variant('B', 'C')",
         "studio.mark_saved({'/car.npz': '9f'})",
         "studio.undo()",
         "studio.redo(3)",

@@ -75,6 +75,24 @@ def test_a_variant_is_named_when_it_is_kept(hand: Hand) -> None:
     assert [each.label for each in hand.viewer.board.widgets() if isinstance(each, Tile)] == ["dusk"]
 
 
+def test_a_second_click_renames_an_older_variant(hand: Hand) -> None:
+    hand.go_to("variants")
+    for _ in range(2):
+        hand.pick("keep")
+        hand.press("return")
+        hand.viewer.studio.recolor("low", blend=0.25)
+    scene = hand.viewer.studio.variants["A"].scene
+    for _ in range(2):
+        hand.pick("A", 0.5)
+    assert hand.hint == "name of the variant: A"
+    hand.type("dawn")
+    hand.press("return")
+    variants = hand.viewer.studio.variants
+    assert list(variants) == ["dawn", "B"]
+    assert variants["dawn"].scene is scene
+    assert hand.hint.startswith("variant dawn")
+
+
 def test_without_a_keyboard_nobody_is_asked(hand: Hand) -> None:
     hand.viewer.session.has_keyboard = False
     hand.pick("add", 0.25)
