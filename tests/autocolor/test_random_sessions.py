@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import runpy
+from hashlib import sha256
 from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
@@ -14,7 +15,7 @@ from hypothesis import settings
 from autocolor import Light, Mesh, Scene, Studio, Surface, read_journal, read_scene, scene_of, write_scene
 from autocolor.journal.autosave import JOURNAL, Autosave
 from autocolor.journal.description import describe_look
-from autocolor.journal.history import History
+from autocolor.journal.history import History, Open
 from autocolor.journal.places import Source, place_of
 from autocolor.screens.picture.watching import MESSAGE
 from autocolor.screens.session import PICTURE
@@ -88,10 +89,15 @@ def begun(name: str, folder: Path, port: HostPort) -> Viewer:
     return Viewer(history, port, folder / "scene")
 
 
-def held_by_a_fresh_display(history: History | Scene) -> tuple[bytes, bytes]:
+def digest_of(display: Ramtek9300) -> str:
+    """A digest of all words and entries; pytest would compare millions of bytes for its message."""
+    return sha256(b"".join(held(display))).hexdigest()
+
+
+def digest_of_a_fresh_display(history: History | Scene) -> str:
     display = Ramtek9300()
     Studio(history, display)
-    return held(display)
+    return digest_of(display)
 
 
 @pytest.mark.parametrize("name", first(2, SCENES))
@@ -100,7 +106,7 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
 ) -> None:
     display, autosave, sent = Ramtek9300(), Autosave(), BytesIO()
     viewer = begun(name, tmp_path, Recorder(sent, display))
-    first = held_by_a_fresh_display(viewer.studio.scene)
+    first = viewer.studio.scene
     hand = RandomHand(viewer, display, seed=len(name))
     for number in range(GESTURES):
         hand.do()
@@ -111,9 +117,7 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
             # What was sent is what the whole page would be, unless a picture comes in line by line.
             whole = Ramtek9300()
             Sheet(whole).show(viewer.board.page())
-            # Asserted apart: pytest would compare millions of bytes for its message.
-            is_whole = held(display) == held(whole)
-            assert is_whole, f"on the screen {viewer.page}, gesture {number}"
+            assert digest_of(display) == digest_of(whole), f"on the screen {viewer.page}, gesture {number}"
     hand.let_go()
     viewer.clear()
     studio = viewer.studio
@@ -121,27 +125,27 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     states = (*studio.history.to_undo, studio.scene, *reversed(studio.history.to_redo))
     assert all(describe_look(before, after) for before, after in pairwise(states))
     assert viewer.page == PICTURE
-    last = held(display)
-    assert last == held_by_a_fresh_display(studio.scene)
+    last = digest_of(display)
+    assert last == digest_of_a_fresh_display(studio.scene)
     assert is_true_to_its_file(studio)
     assert studio.history.steps
     # A display with the instructions of the 9460 finds no more in these words.
     family = Ramtek9300(FAMILY)
     family.send(np.frombuffer(sent.getvalue(), "<u2"))
-    assert held(family) == last
+    assert digest_of(family) == last
     assert display.processor.illegal_words == 0
 
     autosave.update(studio.history, at_once=True)
     (path,) = state.glob(f"sessions/*/{JOURNAL}")
     history = read_journal(path).history
     assert summary(history) == summary(studio.history)
-    assert held_by_a_fresh_display(history) == last
+    assert digest_of_a_fresh_display(history) == last
     script = tmp_path / "session.py"
     script.write_text(studio.journal(beside=tmp_path / "beside"), "utf-8")
     ran = runpy.run_path(str(script))["studio"]
     # The legend of a scalar stands over the words of the picture.
     assert ran.words.tobytes() == studio.words.tobytes()
-    assert held_by_a_fresh_display(ran.scene) == last
+    assert digest_of_a_fresh_display(ran.scene) == last
     autosave.end()
     assert list(state.glob("sessions/*")) == []
 
@@ -150,13 +154,15 @@ def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     while studio.undo() or studio.view_back():
         pass
     viewer.clear()
-    assert held(display) == first
+    # Where another scene was opened, the ways to views end.
+    assert studio.scene.view == first.view or any(isinstance(step, Open) for step in studio.history.steps)
+    assert digest_of(display) == digest_of_a_fresh_display(first.replace(view=studio.scene.view))
     for _ in range(steps):
         studio.redo()
     # The present view stayed.
     studio.edit(studio.scene.replace(view=view))
     viewer.clear()
-    assert held(display) == last
+    assert digest_of(display) == last
 
 
 def test_a_session_over_tcp_gives_the_same_words_and_entries(
@@ -177,7 +183,7 @@ def test_a_session_over_tcp_gives_the_same_words_and_entries(
                 # Its reply comes after everything before was executed.
                 elsewhere.send(instructions.read_entries(0, 2))
                 elsewhere.receive(2)
-                pages.append((viewer.page, held(display)))
+                pages.append((viewer.page, digest_of(display)))
         found.append(pages)
     differing = [number for number, (one, other) in enumerate(zip(*found, strict=True)) if one != other]
     assert differing == []
