@@ -23,6 +23,7 @@ from autocolor.files.opening import read_scene_with_report
 from autocolor.files.paths import PACKAGE, PICTURE_SUFFIX, SCENE_FILE, STORE_SUFFIXES
 from autocolor.files.picture_file import plain_scene
 from autocolor.files.stamps import numbers_of, stamp_of
+from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.mesh import has_same_tables
 from autocolor.scene.scene import Scene
@@ -157,7 +158,11 @@ def opened(
     for mesh in [scene.mesh for scene in known if scene is not None]:
         if mesh.crease_angle == present.mesh.crease_angle and has_same_tables(mesh, present.mesh):
             present = present.replace(mesh=mesh)
-    scene = present if tables is None else present.replace(**tables)
+    scene = present
+    if tables is not None:
+        # Tables leave out what a scene does not have, and the file may have it since.
+        absent = {name: None for name, column in fields_of(Scene).items() if column.is_optional}
+        scene = present.replace(**{**absent, **tables})
     if checksum is not None and checksum != checksum_of(scene):
         raise InputError(
             f"{source.path} must hold the mesh that it held when it was opened, and it was changed since;"

@@ -36,6 +36,10 @@ def test_a_scene_that_was_saved_over_is_opened_as_it_was_and_not_saved_there_aga
     assert checksum_of(again.scene) == checksum_of(then)
     assert again.place.stamp == NO_STAMP
     assert opened(source, to_plain(again.scene.replace(ambient=0.75))).place.stamp
+    # What the scene did not have then is not taken from the file.
+    now = then.replace(front="x", stage="floor").with_scalar(name="z")
+    autocolor.write_scene(source.path, now, overwrite=True)
+    assert checksum_of(opened(source, to_plain(then), checksum_of(then)).scene) == checksum_of(then)
 
 
 def test_a_scene_of_another_checksum_is_refused(source: Source) -> None:
