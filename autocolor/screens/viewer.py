@@ -314,7 +314,8 @@ class Viewer:
         """Run the action of a key or a gesture; returns False if it does nothing here."""
         self._watching.end()
         taken = self._action.do(source, run, continues, moving)
-        self.board.forget()
+        if taken:
+            self.board.forget()
         naming, self.session.naming = self.session.naming, None
         if naming is not None and self.session.has_keyboard:
             self.board.typing.begin(naming)

@@ -390,6 +390,7 @@ def test_a_key_goes_to_the_typed_text_then_to_the_screen_then_to_its_binding(
         return name == "c"
 
     monkeypatch.setattr(Desk, "key", key)
+    hand.viewer.tell("")
     scene = hand.scene
     assert hand.press("c")
     assert hand.scene is scene
