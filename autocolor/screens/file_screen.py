@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -244,8 +244,8 @@ class FileScreen(Screen):
         pages = [files[first : first + size] for first in range(0, len(files), size)] or [files]
         page = min(self._pages[name], len(pages) - 1)
         help = "A click turns to the next page of files; at the left end, to the page before."
-        turning = page_choice(help, page, len(pages), partial(self._pages.__setitem__, name))
-        return pages[page], [replace(turning, within=name)] if len(pages) > 1 else []
+        turning = page_choice(help, page, len(pages), partial(self._pages.__setitem__, name), within=name)
+        return pages[page], [turning] if len(pages) > 1 else []
 
     def _row(self, file: File, shown: str) -> Widget:
         path, kind, changed = file
