@@ -4,9 +4,9 @@
  *
  * A page holds the picture once, as words. A recoloring computes the entries of one surface and looks up the
  * colors of its pixels again; no word changes. The strength of a light changes words, which are computed from
- * light planes; then no entry changes. A page that turns holds the words of each view; all have one table. A
- * page keeps its own history, and writes its values into the link's fragment. In a notebook the host keeps the
- * history: edits are shown at once and sent to the host.
+ * light planes; then no entry changes. A page that turns holds the words of each view; all views have one
+ * table. A page keeps its own history, and writes its values into the link's fragment. In a notebook the host
+ * keeps the history: edits are shown at once and sent to the host.
  *
  * Keys and values are those of the command line: `surfaces.body.object_color`, `lights.key.intensity`.
  */
@@ -47,7 +47,12 @@ const PAINT = /** @type {const} */ (["object_color", "light_color", "blend", "li
 
 /** The bytes of packed values. @param {Packed} packed @returns {Bytes} */
 export function bytesOf(packed) {
-  if (typeof packed === "string") return Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
+  if (typeof packed === "string") {
+    const letters = atob(packed);
+    const bytes = new Uint8Array(letters.length);
+    for (let at = 0; at < bytes.length; at++) bytes[at] = letters.charCodeAt(at);
+    return bytes;
+  }
   return new Uint8Array(/** @type {ArrayBuffer} */ (packed.buffer), packed.byteOffset, packed.byteLength);
 }
 
@@ -406,10 +411,7 @@ export function paintOf(state, name) {
 /** The values of a variant. @param {State} first @param {Variant} variant @returns {State} */
 function stateOfVariant(first, variant) {
   const state = { ...first };
-  for (const [table, rows] of [
-    ["surfaces", variant.paints],
-    ["lights", variant.lights],
-  ]) {
+  for (const [table, rows] of [["surfaces", variant.paints], ["lights", variant.lights]]) {
     for (const [name, fields] of Object.entries(rows ?? {})) {
       for (const [field, value] of Object.entries(fields)) {
         if (`${table}.${name}.${field}` in state) state[`${table}.${name}.${field}`] = value;
@@ -436,12 +438,8 @@ function alike(one, other) {
 
 /** The name of the first light that keys belong to; empty if none. @param {string[]} keys */
 function lightIn(keys) {
-  return (
-    keys
-      .find((key) => key.startsWith("lights."))
-      ?.slice(7)
-      .replace(/\.[^.]*$/, "") ?? ""
-  );
+  const key = keys.find((each) => each.startsWith("lights."));
+  return key?.slice(7).replace(/\.[^.]*$/, "") ?? "";
 }
 
 /** A value as the command line reads it. @param {Value} value */
@@ -489,7 +487,8 @@ function keysOfLinks(first) {
  */
 export function fragmentOf(state, first, view = 0) {
   const names = new Map([...keysOfLinks(first)].map(([name, key]) => [key, name]));
-  const pairs = differing(state, first).map((key) => [names.get(key), textOf(state[key]).replaceAll("#", "")]);
+  const valueIn = (/** @type {string} */ key) => textOf(state[key]).replaceAll("#", "");
+  const pairs = differing(state, first).map((key) => [names.get(key), valueIn(key)]);
   if (view) pairs.unshift(["view", String(view + 1)]);
   return pairs.map((pair) => pair.map((text) => encodeURIComponent(text ?? "")).join("=")).join("&");
 }
@@ -544,10 +543,7 @@ export function tableOf(state, first, { name, lights }) {
   });
   const cell = (/** @type {string} */ text) =>
     /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-  const rows = [
-    ["name", ...keys],
-    [name, ...keys.map((key) => textOf(state[key]))],
-  ];
+  const rows = [["name", ...keys], [name, ...keys.map((key) => textOf(state[key]))]];
   if (lights && keys.some((key) => key.startsWith("lights.") && !same(state[key], first[key]))) {
     rows[0].push("exposure");
     rows[1].push(lights.exposure);
@@ -576,23 +572,33 @@ function load(table, first, entries) {
  * @param {number} elements
  */
 function boxesIn(words, owner, count, elements) {
-  /** @type {Box[]} */
-  const boxes = Array.from({ length: count }, () => ({ left: elements, top: Infinity, right: -1, bottom: -1 }));
-  for (let at = 0; at < words.length; at++) {
-    const box = boxes[owner[words[at]] - 1];
-    if (!box) continue;
-    const element = at % elements;
-    box.left = Math.min(box.left, element);
-    box.right = Math.max(box.right, element);
-    box.bottom = (at - element) / elements;
-    box.top = Math.min(box.top, box.bottom);
+  /** @type {() => Box} */
+  const none = () => ({ left: elements, top: Infinity, right: -1, bottom: -1 });
+  const boxes = Array.from({ length: count }, none);
+  for (let line = 0, at = 0; at < words.length; line++) {
+    for (let element = 0; element < elements; ) {
+      const number = owner[words[at]];
+      const begin = element;
+      do {
+        element++;
+        at++;
+      } while (element < elements && owner[words[at]] === number);
+      const box = boxes[number - 1];
+      if (!box) continue;
+      box.left = Math.min(box.left, begin);
+      box.right = Math.max(box.right, element - 1);
+      box.bottom = line;
+      box.top = Math.min(box.top, line);
+    }
   }
   return boxes;
 }
 
 /** How many words differ. @param {Words} words @param {Words} others */
 function countOfChanges(words, others) {
-  return words.reduce((count, word, at) => count + (word === others[at] ? 0 : 1), 0);
+  let count = 0;
+  for (let at = 0; at < words.length; at++) if (words[at] !== others[at]) count++;
+  return count;
 }
 
 /**
@@ -602,10 +608,7 @@ function countOfChanges(words, others) {
 function glassOf(picture, words, entries, legendWords) {
   const { lines, elements, smooth, surfaces, legend } = picture;
   const canvas = make("canvas", {
-    width: elements,
-    height: lines,
-    role: "img",
-    "aria-label": `Picture of ${picture.name}`,
+    width: elements, height: lines, role: "img", "aria-label": `Picture of ${picture.name}`,
   });
   const outline = make("canvas", { width: elements, height: lines, class: "outline" });
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
@@ -679,13 +682,8 @@ function glassOf(picture, words, entries, legendWords) {
       const other = (/** @type {number} */ at) => owner[words[at]] !== number + 1;
       for (let at = away * elements; at < words.length - away * elements; at++) {
         if (other(at)) continue;
-        if (
-          other(at - away) ||
-          other(at + away) ||
-          other(at - away * elements) ||
-          other(at + away * elements)
-        )
-          dots[at] = 0xffffffff;
+        const down = away * elements;
+        if (other(at - away) || other(at + away) || other(at - down) || other(at + down)) dots[at] = 0xffffffff;
       }
       drawPixels(outline, dots);
     },
@@ -765,10 +763,7 @@ export async function mount(root, picture, options = {}) {
     update({ words, entries, picture: changed }, keys = []) {
       queue = queue.then(async () => {
         picture = {
-          ...picture,
-          ...changed,
-          words: words ?? picture.words,
-          entries: entries ?? picture.entries,
+          ...picture, ...changed, words: words ?? picture.words, entries: entries ?? picture.entries,
         };
         if (await built.update(picture, keys)) return;
         built.destroy();
@@ -888,9 +883,9 @@ async function build(root, picture, options) {
     const keys = differing(next, desk.state);
     desk.state = next;
     const light = lightIn(keys);
-    if (light && relight) {
-      const changed = relight(next, light);
-      if (desk.view === 0) glass.look(glass.whole);
+    const changed = light && relight ? relight(next, light) : 0;
+    if (light && relight && desk.view === 0) {
+      glass.look(glass.whole);
       desk.say(`${COUNT.format(changed)} words rewritten, no entry of the table: light is in the words.`);
     }
     const painted = paintedBy(keys);
@@ -953,13 +948,14 @@ async function build(root, picture, options) {
     const { name } = views[view];
     desk.say(`View ${name}: ${COUNT.format(changed)} words rewritten, no entry of the table.`);
     sync();
-    if (!from) writeFragment();
+    if (!from?.isDrag) writeFragment();
   }
 
   /** Inflate another view, the nearest first, whenever there is nothing else to do. */
   function inflate() {
     const half = views.length / 2;
-    const away = (/** @type {number} */ view) => Math.abs(((view - desk.view + 3 * half) % (2 * half)) - half);
+    const turns = (/** @type {number} */ view) => (view - desk.view + 3 * half) % (2 * half);
+    const away = (/** @type {number} */ view) => Math.abs(turns(view) - half);
     const left = [...views.keys()].filter((view) => !rasters[view]);
     const [view] = left.sort((one, other) => away(one) - away(other));
     if (view === undefined || life.signal.aborted) return;
@@ -1004,7 +1000,7 @@ async function build(root, picture, options) {
       if (isPrimary && button === 0 && views.length) from = { x: clientX, view: asked, isDrag: false };
     },
     pointermove(/** @type {PointerEvent} */ event) {
-      if (from) {
+      if (from && event.buttons) {
         const share = (event.clientX - from.x) / glass.canvas.clientWidth;
         if (!from.isDrag && Math.abs(event.clientX - from.x) > 6) {
           from.isDrag = true;
@@ -1042,12 +1038,7 @@ async function build(root, picture, options) {
   const head = div("head", ...(hosted ? [] : [title(desk)]), toolbar(desk, step, counts, compare));
   const under = div("under", paints(desk), status, ...variantStrip(desk, relight, words), wholeTable(desk));
   const panel = div(
-    "panel",
-    surfaceList(desk),
-    paintPanel(desk),
-    ...lightRows(desk),
-    notes,
-    sharing(desk, hosted),
+    "panel", surfaceList(desk), paintPanel(desk), ...lightRows(desk), notes, sharing(desk, hosted),
   );
   root.replaceChildren(
     make(hosted ? "div" : "main", { class: "desk" }, head, div("stage", screen), under, panel),
@@ -1058,32 +1049,26 @@ async function build(root, picture, options) {
   const keys = hosted ? root : document;
   const life = new AbortController();
   const onKey = (/** @type {Event} */ event) => {
-    const {
-      key: name,
-      ctrlKey,
-      metaKey,
-      shiftKey,
-      altKey,
-      type,
-      target,
-    } = /** @type {KeyboardEvent} */ (event);
-    if (type === "keyup") {
+    const press = /** @type {KeyboardEvent} */ (event);
+    const { key: name, shiftKey, target } = press;
+    const isCommand = press.ctrlKey || press.metaKey;
+    if (press.type === "keyup") {
       keyHeld = false;
       if (gesture) desk.rest();
       return;
     }
     const kind = target instanceof HTMLInputElement ? target.type : "";
-    if (views.length && !kind && !(ctrlKey || metaKey || altKey) && /^Arrow(Left|Right)$/.test(name)) {
-      event.preventDefault();
+    if (views.length && !kind && !isCommand && !press.altKey && /^Arrow(Left|Right)$/.test(name)) {
+      press.preventDefault();
       turn(asked + (name === "ArrowLeft" ? -1 : 1));
     }
     keyHeld = kind === "range" && /^(Arrow|Page|Home|End)/.test(name);
     // In a text, these keys undo what was typed.
     const inText = kind === "text" || kind === "number";
     const letter = name.toLowerCase();
-    if (!(ctrlKey || metaKey) || altKey || inText || !(letter === "z" || letter === "y")) return;
-    event.preventDefault();
-    event.stopPropagation();
+    if (!isCommand || press.altKey || inText || !(letter === "z" || letter === "y")) return;
+    press.preventDefault();
+    press.stopPropagation();
     step(letter === "y" || shiftKey ? 1 : -1);
   };
   const mortal = { signal: life.signal };
@@ -1157,23 +1142,26 @@ function title(desk) {
 /** Named paints for the chosen surface, and a random paint. @param {Desk} desk */
 function paints(desk) {
   const group = make("div", { class: "paints", role: "group" });
-  const key = (/** @type {string} */ field) => `surfaces.${desk.picture.surfaces[desk.chosen]?.name}.${field}`;
+  const chosen = () => desk.picture.surfaces[desk.chosen] ?? { name: "", fixed: "none" };
+  const key = (/** @type {string} */ field) => `surfaces.${chosen().name}.${field}`;
   const recolor = (/** @type {Partial<Paint>} */ paint) =>
-    desk.edit(Object.fromEntries(Object.entries({ ramp: null, ...paint }).map(([field, value]) => [key(field), value])));
+    desk.edit(Object.fromEntries(Object.entries(paint).map(([field, value]) => [key(field), value])));
   const buttons = Object.entries(desk.picture.swatches).map(([name, color]) => {
     const ball = make("span", { class: "ball" });
     ball.style.background = `radial-gradient(circle at 36% 30%, #fff, ${color} 45%)`;
-    const button = make("button", { onclick: () => recolor({ object_color: color }) }, ball, make("span", {}, name));
+    const onclick = () => recolor({ object_color: color, ramp: null });
+    const button = make("button", { onclick }, ball, make("span", {}, name));
     desk.syncs.push(() => {
       const isPaint = desk.state[key("ramp")] === null && desk.state[key("object_color")] === color;
       button.ariaPressed = String(isPaint);
     });
     return button;
   });
-  const random = (/** @type {number} */ low, /** @type {number} */ high) => low + Math.random() * (high - low);
+  const random = (least = 0, most = 0) => least + Math.random() * (most - least);
   const surprise = () => {
     const hue = random(0, 360);
     recolor({
+      ramp: null,
       object_color: cssColor(`hsl(${hue} ${random(30, 95)}% ${random(15, 60)}%)`),
       light_color: cssColor(`hsl(${hue + random(-90, 90)} ${random(20, 100)}% ${random(80, 95)}%)`),
       blend: Math.round(random(0, 65)) / 100,
@@ -1181,9 +1169,8 @@ function paints(desk) {
   };
   group.append(...buttons, make("button", { class: "surprise", onclick: surprise }, "Surprise me"));
   desk.syncs.push(() => {
-    const { name = "", fixed = "none" } = desk.picture.surfaces[desk.chosen] ?? {};
-    group.hidden = fixed !== "";
-    group.ariaLabel = `Paints for ${name}`;
+    group.hidden = chosen().fixed !== "";
+    group.ariaLabel = `Paints for ${chosen().name}`;
   });
   return group;
 }
@@ -1218,36 +1205,23 @@ function changesTo(desk, state) {
 function comparison(screen, drawBefore) {
   /** @type {HTMLElement[]} */
   let shown = [];
-  const button = make(
-    "button",
-    {
-      "aria-pressed": "false",
-      title: "Show the picture as it was, left of a line",
-      onclick() {
-        const isOn = shown.length === 0;
-        button.ariaPressed = String(isOn);
-        shown.forEach((each) => each.remove());
-        shown = isOn ? split() : [];
-        screen.append(...shown);
-      },
-    },
-    icon(COMPARE),
-    "Before",
-  );
+  const onclick = () => {
+    const isOn = shown.length === 0;
+    button.ariaPressed = String(isOn);
+    shown.forEach((each) => each.remove());
+    shown = isOn ? split() : [];
+    screen.append(...shown);
+  };
+  const attributes = { "aria-pressed": "false", title: "Show the picture as it was, left of a line", onclick };
+  const button = make("button", attributes, icon(COMPARE), "Before");
   function split() {
     const before = drawBefore();
     before.className = "before";
     before.ariaHidden = "true";
     const move = () => screen.style.setProperty("--split", `${line.value}%`);
     const line = make("input", {
-      type: "range",
-      class: "split",
-      min: 0,
-      max: 100,
-      step: 0.5,
-      value: 50,
-      "aria-label": "Line between before and after",
-      oninput: move,
+      type: "range", class: "split", min: 0, max: 100, step: 0.5, value: 50,
+      "aria-label": "Line between before and after", oninput: move,
     });
     move();
     return [before, make("span", { class: "line" }), line];
@@ -1303,13 +1277,14 @@ function paintPanel(desk) {
     if (needed !== built) {
       built = needed;
       syncs = [];
-      const title = make("h2", {}, make("span", {}, name), make("small", {}, rangeText(first, levels)));
+      const range = make("small", {}, `words ${first} to ${first + levels - 1}`);
+      const heading = make("h2", {}, make("span", {}, name), range);
       const controls = fixed
         ? [strip(desk, syncs), make("p", { class: "fixed" }, fixed)]
         : isRamp
           ? ramp()
           : twoColors();
-      panel.replaceChildren(title, ...controls);
+      panel.replaceChildren(heading, ...controls);
     }
     syncs.forEach((each) => each());
   });
@@ -1325,11 +1300,7 @@ function paintPanel(desk) {
       });
     return [
       strip(desk, syncs),
-      make(
-        "p",
-        { class: "fixed" },
-        `A ramp of ${colors.length} colors, from the lowest level to the highest.`,
-      ),
+      make("p", { class: "fixed" }, `A ramp of ${colors.length} colors, from the lowest level up.`),
       make("button", { onclick: replace }, "Use two colors instead"),
     ];
   }
@@ -1337,10 +1308,7 @@ function paintPanel(desk) {
   function twoColors() {
     const { name } = desk.picture.surfaces[desk.chosen];
     const key = (/** @type {string} */ each) => `surfaces.${name}.${each}`;
-    const tabs = [
-      ["object_color", "Object color"],
-      ["light_color", "Light color"],
-    ].map(([each, label]) => {
+    const tabs = [["object_color", "Object color"], ["light_color", "Light color"]].map(([each, label]) => {
       const radio = make("input", {
         type: "radio",
         name: `${desk.id}-color`,
@@ -1353,18 +1321,12 @@ function paintPanel(desk) {
       return make("label", {}, radio, swatch, label);
     });
     const blend = slider(desk, syncs, {
-      label: "Blend",
-      title: `Blend of ${name}: where the light color begins`,
-      max: 1,
-      step: 0.01,
+      label: "Blend", title: `Blend of ${name}: where the light color begins`, max: 1, step: 0.01,
       key: key("blend"),
     });
     const percentage = slider(desk, syncs, {
-      label: "Light %",
-      title: `Percent of the light color at the highest level of ${name}`,
-      max: 100,
-      step: 1,
-      key: key("light_percentage"),
+      label: "Light %", title: `Percent of the light color at the highest level of ${name}`, max: 100,
+      step: 1, key: key("light_percentage"),
     });
     blend.firstElementChild?.nextElementSibling?.before(strip(desk, syncs));
     blend.classList.add("blend");
@@ -1381,11 +1343,6 @@ function paintPanel(desk) {
     /** @type {HTMLElement | null} */ (panel.querySelector(`[value="${each}"]`))?.focus();
   }
   return panel;
-}
-
-/** The words of a range, as text. @param {number} first @param {number} levels */
-function rangeText(first, levels) {
-  return `words ${first} to ${first + levels - 1}`;
 }
 
 /**
@@ -1413,33 +1370,15 @@ function drawPixels(canvas, pixels) {
  * @param {{label: string, title: string, max: number, step: number, key?: string, value?: () => number,
  *   edits?: (value: number) => State, track?: () => string}} spec
  */
-function slider(
-  desk,
-  syncs,
-  {
-    label,
-    title,
-    max,
-    step,
-    key = "",
-    value = () => Number(desk.state[key]),
-    edits = (each) => ({ [key]: each }),
-    track,
-  },
-) {
+function slider(desk, syncs, { label, title, max, step, key = "", track, ...spec }) {
+  const { value = () => Number(desk.state[key]), edits = (each) => ({ [key]: each }) } = spec;
   const take = (/** @type {Event} */ event) => {
     const text = /** @type {HTMLInputElement} */ (event.target).value;
     const number = Math.min(Math.max(Number(text), 0), max);
     if (text !== "" && Number.isFinite(number)) desk.edit(edits(number), title);
   };
   const range = make("input", {
-    type: "range",
-    min: 0,
-    max,
-    step,
-    "aria-label": title,
-    title,
-    oninput: take,
+    type: "range", min: 0, max, step, "aria-label": title, title, oninput: take,
   });
   const digits = make("input", {
     type: "number",
@@ -1538,10 +1477,7 @@ function lightRows(desk) {
     });
     desk.syncs.push(() => (toggle.checked = desk.state[key] === true));
     const strength = slider(desk, desk.syncs, {
-      label: "",
-      title: `Strength of light ${name}`,
-      max: most,
-      step: most / 200,
+      label: "", title: `Strength of light ${name}`, max: most, step: most / 200,
       key: `lights.${name}.intensity`,
     });
     return div("light", make("label", {}, toggle, make("span", {}, name)), strength);
@@ -1555,31 +1491,20 @@ function lightRows(desk) {
   return [make("section", { class: "lights" }, make("h2", {}, "Lights"), box, why)];
 }
 
-const RESTING = "This view is shown as it was lit. The page has the planes of its lights for the first view only.";
+const RESTING = "The lights rest in this view: the page has their planes for the first view only.";
 
 /** The whole lookup table, with the range of the chosen surface, behind a fold. @param {Desk} desk */
 function wholeTable(desk) {
   const canvas = make("canvas", { width: ENTRIES, height: 1 });
   const mark = make("span", { class: "mark" });
-  const text = make("span", {});
   desk.syncs.push(() => {
     drawPixels(canvas, desk.glass.table);
-    const { name, first, levels } = desk.picture.surfaces[desk.chosen] ?? { name: "", first: 0, levels: 0 };
+    const { first, levels } = desk.picture.surfaces[desk.chosen] ?? { first: 0, levels: 0 };
     mark.style.left = `${(100 * first) / ENTRIES}%`;
     mark.style.width = `${(100 * levels) / ENTRIES}%`;
-    text.textContent = name && `${rangeText(first, levels)} are ${name}`;
   });
-  canvas.addEventListener("click", ({ offsetX }) => {
-    const number = desk.glass.owner[Math.floor((offsetX / canvas.clientWidth) * ENTRIES)] - 1;
-    if (number >= 0) desk.choose(number);
-  });
-  return make(
-    "details",
-    { class: "table" },
-    make("summary", {}, "Lookup table, 1,024 entries"),
-    div("entries", canvas, mark),
-    make("p", {}, text),
-  );
+  const summary = make("summary", {}, "Lookup table, 1,024 entries");
+  return make("details", { class: "table" }, summary, div("entries", canvas, mark));
 }
 
 /**
@@ -1662,7 +1587,8 @@ function sharing(desk, hosted) {
   function copyEmbedded() {
     const url = new URL(location.href);
     url.searchParams.set("embed", "1");
-    copy(`<iframe src="${url.href.replaceAll("&", "&amp;")}" title="A picture to recolor" width="640" height="600"></iframe>`);
+    const source = url.href.replaceAll("&", "&amp;");
+    copy(`<iframe src="${source}" title="A picture to recolor" width="640" height="600"></iframe>`);
   }
   const hasAddress = location.protocol.startsWith("http");
   function savePicture() {
