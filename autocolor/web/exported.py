@@ -76,7 +76,7 @@ from autocolor.scene.surfaces import Paint
 from autocolor.scene.swatches import car_paints
 from autocolor.scene.view import NamedView
 from autocolor.sending import shown_words
-from autocolor.web.views import check_table, exposure_to_hold, held
+from autocolor.web.views import check_table, exposure_to_hold, held_scene
 
 FORMAT: Final = "autocolor page 2"
 
@@ -145,38 +145,41 @@ def export_of(
     )
     image = display_image(scene, picture)
     if len(views) > 1:
-        image = display_image(held(image), picture)
+        image = display_image(held_scene(image), picture)
     values, entries = values_of(image), image.entries.copy()
-    turns = [{"name": views[0].name, "words": ""}] if len(views) > 1 else []
-    seen = _visible(picture)
-    for view in views[1:]:
-        turned = image.scene.replace(view=view.view)
-        shown = display_image(turned, render(turned, picture.size, smooth=picture.smooth))
-        check_table(view.name, shown, image)
-        turns.append({"name": view.name, "words": _text(packed_words(shown.words))})
-        for surface in values["surfaces"]:
-            # The floor of a surface is known from the first view that shows it.
-            if surface["name"] in _visible(shown.picture) - seen:
-                surface["floor"] = shown.floor_of(surface["name"])
-                run = slice(surface["first"], surface["first"] + surface["levels"])
-                entries[run] = shown.entries_of(surface["name"])
-        seen |= _visible(shown.picture)
-        if progress is not None:
-            progress(view.name)
-    for surface in values["surfaces"]:
-        # The browser computes these. Measured: the page of the coupe loses 3 kB.
-        if not surface["fixed"]:
-            entries[surface["first"] : surface["first"] + surface["levels"]] = 0
-    return {
-        **values,
+    values |= {
         "smooth": picture.smooth,
         "words": _text(packed_words(image.words)),
-        "views": turns,
-        "entries": _text(zlib.compress(entries.tobytes(), 9)),
         "legend": _legend_values(image, picture.smooth),
         "variants": _variant_values(image, values, variants, lights),
         "lights": _light_values(image) if lights else None,
     }
+    known = _visible(picture)
+    for turned in views[1:]:
+        scene = image.scene.replace(view=turned.view)
+        shown = display_image(scene, render(scene, picture.size, smooth=picture.smooth))
+        check_table(turned.name, shown, image)
+        values["views"].append({"name": turned.name, "words": _text(packed_words(shown.words))})
+        for surface in values["surfaces"]:
+            # The first view that shows a surface tells how bright its lowest level is.
+            if surface["name"] in _visible(shown.picture) - known:
+                surface["floor"] = shown.floor_of(surface["name"])
+                entries[_run(surface)] = shown.entries_of(surface["name"])
+        known |= _visible(shown.picture)
+        if progress is not None:
+            progress(turned.name)
+    if values["views"]:
+        values["views"].insert(0, {"name": views[0].name, "words": ""})
+    for surface in values["surfaces"]:
+        # The browser computes these. Measured: the page of the coupe loses 3 kB.
+        if not surface["fixed"]:
+            entries[_run(surface)] = 0
+    return {**values, "entries": _text(zlib.compress(entries.tobytes(), 9))}
+
+
+def _run(surface: Mapping[str, Any]) -> slice:
+    """The entries of an exported surface."""
+    return slice(surface["first"], surface["first"] + surface["levels"])
 
 
 def _visible(picture: Picture) -> set[str]:

@@ -2,7 +2,7 @@
 
 A turn changes words only, and a paint entries only, in every view: all views have one table. So the other
 views have the levels of the first, and intensities are mapped by its exposure. A view looks as an image of
-the scene that `held` returns, with that view.
+the scene that `held_scene` returns, with that view.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def exposure_to_hold(image: DisplayImage, subject: str) -> Exposure:
     return exposure
 
 
-def held(image: DisplayImage) -> Scene:
+def held_scene(image: DisplayImage) -> Scene:
     """The scene of an image, in which other views have its levels and its exposure; no word of it changes.
 
     Raises as `exposure_to_hold`.

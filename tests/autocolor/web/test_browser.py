@@ -539,7 +539,7 @@ def test_every_view_shows_the_image_of_its_scene_before_and_after_a_recoloring(
     assert again.evaluate(SHOWN) == shown_by(gold[3])
 
 
-def test_a_drag_turns_and_chooses_no_surface_and_a_finger_still_scrolls(
+def test_a_drag_turns_and_chooses_no_surface(
     opened: Open, turning: tuple[autocolor.Scene, list[autocolor.Scene]]
 ) -> None:
     scene, views = turning
@@ -563,8 +563,28 @@ def test_a_drag_turns_and_chooses_no_surface_and_a_finger_still_scrolls(
     assert page.evaluate(SHOWN) == shown_by(views[3])
     page.mouse.click(x, y)
     assert page.get_by_role("radio", name="body").is_checked()
-    touched = "getComputedStyle(document.querySelector('.glass canvas')).touchAction"
-    assert page.evaluate(touched) == "pan-y pinch-zoom"
+
+
+def test_a_finger_turns_sideways_and_scrolls_the_page_up_and_down(
+    opened: Open, turning: tuple[autocolor.Scene, list[autocolor.Scene]]
+) -> None:
+    phone = {"has_touch": True, "is_mobile": True, "viewport": {"width": 390, "height": 844}}
+    page = opened(turning[0], None, context=phone, **TURNING)
+    session = page.context.new_cdp_session(page)
+
+    def swipe(right: int, down: int) -> None:
+        for step in range(11):
+            point = {"x": 195 + right * step / 10, "y": 260 + down * step / 10}
+            kind = "touchMove" if step else "touchStart"
+            session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
+        session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+    swipe(-100, 5)
+    wait_for_view(page, "90°")
+    assert page.evaluate("scrollY") == 0
+    swipe(5, -150)
+    page.wait_for_function("scrollY > 50")
+    assert page.evaluate("location.hash") == "#view=2"
 
 
 def test_lights_rest_in_other_views_and_shine_again_in_the_first(
@@ -613,6 +633,21 @@ def test_named_paints_and_a_surprise_recolor_the_chosen_surface(
     assert surprised == digest(image(scene_with(coupe, variant.settings), small, smooth=1))
     page.keyboard.press("Control+z")
     assert page.evaluate(SHOWN) == before
+
+
+def test_a_page_with_an_address_gives_code_to_embed_it(
+    browser: Browser, coupe: autocolor.Scene, small: autocolor.Picture, tmp_path: Path
+) -> None:
+    autocolor.save_page(tmp_path / "coupe.html", coupe, small)
+    context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.route("**", lambda route: route.fulfill(body=(tmp_path / "coupe.html").read_bytes()))
+    page.goto("https://example.com/coupe.html?a=1&b=2#body=102030")
+    page.get_by_role("button", name="Copy embed code").click()
+    page.wait_for_function("document.querySelector('[role=status]').textContent.startsWith('Copied')")
+    source = "https://example.com/coupe.html?a=1&amp;b=2&amp;embed=1#body=102030"
+    assert f'src="{source}"' in page.evaluate("navigator.clipboard.readText()")
+    context.close()
 
 
 def test_an_embedded_page_has_the_picture_and_the_paints_and_prints_the_picture(

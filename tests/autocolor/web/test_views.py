@@ -153,8 +153,8 @@ def test_an_orbit_begins_at_the_view_and_stays_above_a_stage() -> None:
     assert np.allclose(beside, [-away[1], away[0]])
 
 
-def page(scene: Scene, views: Any) -> object:
-    return save_page("never written.html", scene, size=SIZE, views=views)
+def page(scene: Scene, views: Any) -> None:
+    save_page("never written.html", scene, size=SIZE, views=views)
 
 
 LOW = [NamedView("low", BELOW)]
