@@ -13,7 +13,6 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Indices
-from autocolor.checks import Vector
 from autocolor.lighting.controls import Plane, flaps_of
 from autocolor.lighting.picking import (
     CONE,
@@ -31,7 +30,6 @@ from autocolor.scene.scene import NORMALS
 from autocolor.screens.cached import Cached
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
-from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import (
     BLACK,
@@ -69,10 +67,6 @@ class HandleKey(NamedTuple):
     place: tuple[int, int] | None = None
 
 
-Source = tuple[Vector, Vector | None]
-"""The source of a light's rays: its position, and the direction of a light at infinity."""
-
-
 class LightHandles:
     """The highlights of all lights, and with `has_rims` the rims of the chosen light, in `area`."""
 
@@ -80,9 +74,9 @@ class LightHandles:
         self.session = session
         self.area = area
         self._has_rims = has_rims
-        self._placed: tuple[str, Source, VisiblePoints, tuple[int, int]] | None = None
-        """A light, its source, the visible points, and the line and element where the highlight was placed.
-        It is there without a search: other pixels may be as bright."""
+        self._placed: tuple[object, tuple[int, int]] = None, (0, 0)
+        """The source of a light, and the line and element where its highlight was placed. It is there
+        without a search: other pixels may be as bright."""
         self._searched: dict[str, Cached[tuple[int, int] | None]] = {}
         """The line and element of the highlight of each light that was searched."""
         self._rims: Cached[tuple[Sequence[Handle], Sequence[Item]]] = Cached()
@@ -93,29 +87,26 @@ class LightHandles:
         if self.session.moving:
             return ()
         lights = self._seen_lights()
-        places = ((light.name, self._highlight(light)) for light in lights)
         # Of several handles at the same distance, the last is grabbed.
-        return [
-            *self._at_rims(lights)[0],
-            *(
-                self._handle(HandleKey(name, HIGHLIGHT), *place, f"highlight of {name}")
-                for name, place in places
-                if place is not None
-            ),
-        ]
+        handles = [*self._at_rims(lights)[0]]
+        for light in lights:
+            place = self._highlight(light)
+            if place is not None:
+                key = HandleKey(light.name, HIGHLIGHT)
+                handles.append(self._handle(key, *place, f"highlight of {light.name}"))
+        return handles
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         """Handles near a place. Of several highlights, the light that shines most at the place is first."""
-        keys = [each.key for each in near]
-        numbers = [n for n, key in enumerate(keys) if isinstance(key, HandleKey) and key.what == HIGHLIGHT]
-        if len(numbers) < 2:
+        keys = ((each, each.key) for each in near)
+        lights = {
+            each: key.light for each, key in keys if isinstance(key, HandleKey) and key.what == HIGHLIGHT
+        }
+        if len(lights) < 2:
             return near
         shares = specular_shares(self.session.studio.picture, line, element)
-        brightest = sorted(numbers, key=lambda number: -shares.get(_key_of(near[number]).light, 0.0))
-        handles = list(near)
-        for number, other in zip(numbers, brightest, strict=True):
-            handles[number] = near[other]
-        return handles
+        brightest = iter(sorted(lights, key=lambda each: -shares.get(lights[each], 0.0)))
+        return [next(brightest) if each in lights else each for each in near]
 
     def items(self) -> Sequence[Item]:
         """The marks at the handles: dotted lines along the rims, and crosses at the highlights.
@@ -160,8 +151,7 @@ class LightHandles:
         session.edit(scene)
         light = scene.lights_in_world[key.light]
         if key.what == HIGHLIGHT:
-            points = session.studio.sight.points
-            self._placed = light.name, _source_of(light), points, (line, element)
+            self._placed = self._source_of(light), (line, element)
         session.tell(message_of(light, key.what, session.world))
 
     def _seen_lights(self) -> list[Light]:
@@ -174,12 +164,16 @@ class LightHandles:
 
     def _highlight(self, light: Light) -> tuple[int, int] | None:
         """The line and element of the highlight on the chosen surface, else on any surface, in the area."""
-        placed, points = self._placed, self.session.studio.sight.points
-        if placed is not None and placed[:2] == (light.name, _source_of(light)) and placed[2] is points:
-            place: tuple[int, int] | None = placed[3]
-        else:
+        source, placed = self._placed
+        place: tuple[int, int] | None = placed
+        if source != self._source_of(light):
             place = None if self.session.moving else self._search(light.name)
         return place if place is not None and self.area.has(*reversed(place)) else None
+
+    def _source_of(self, light: Light) -> object:
+        """The visible points and all of a light on which the place of its highlight depends."""
+        axis = light.axis if light.at_infinity else None
+        return self.session.studio.sight.points, light.name, light.position, axis
 
     def _search(self, light: str) -> tuple[int, int] | None:
         """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E)."""
@@ -244,15 +238,6 @@ def highlight_items(element: int, line: int, area: Area, word: int = YELLOW) -> 
     return [segments(shadow, BLACK, around), segments(strokes, word, around)]
 
 
-def _key_of(handle: Handle) -> HandleKey:
-    assert isinstance(handle.key, HandleKey)
-    return handle.key
-
-
-def _source_of(light: Light) -> Source:
-    return light.position, light.axis if light.at_infinity else None
-
-
 def name_of(rim: Rim) -> str:
     """The name of a rim's control in the message line."""
     if rim == CONE:
@@ -270,9 +255,8 @@ def message_of(light: Light, what: Literal["highlight"] | Rim, world: World) -> 
         return f"{light.name}: cone angle {light.cone_angle:.1f} degrees"
     if isinstance(what, tuple) and not isinstance(what, Plane):
         axis, end = what
-        flap = flaps_of(light)[axis]
-        limit = number_text(getattr(flap, end), world.range_of(axis).step)
-        return f"{light.name}: flap {axis}, {end} {limit}"
+        limit = getattr(flaps_of(light)[axis], end)
+        return f"{light.name}: flap {axis}, {end} {number_text(limit, world.range_of(axis).step)}"
     name, point = light.name, light.position
     if isinstance(what, Plane):
         name, point = next((r.name, r.point) for r in light.half_spaces if r.name == what.half_space)
