@@ -94,7 +94,9 @@ def redo_step(viewer: Driven) -> None:
 def go_to_view(viewer: Driven, back: bool) -> None:
     """Return to the view before, or forward to the view that was left."""
     viewer.show_scene()
-    edits.view_again(viewer.session, back)
+    studio = viewer.session.studio
+    if not (studio.view_back() if back else studio.view_forward()):
+        viewer.session.tell(f"there is no view {'before' if back else 'after'} this one")
 
 
 def reopen(viewer: Driven) -> None:
@@ -128,7 +130,9 @@ def text_to_copy(board: Board) -> str:
         return board.typing.text
     if isinstance(board.lit, Entry):
         return board.lit.value
-    color = board.content.color_at(*board.pointer)
+    color, sample = board.content.color_at(*board.pointer), board.content.sample(*board.pointer)
+    if color is None and sample is not None:
+        color = sample.color
     return "" if color is None else in_digits(color)
 
 
@@ -250,7 +254,7 @@ BINDINGS: Final[tuple[Binding[Driven], ...]] = (
     Binding(
         (Chord("r"), Chord("r", shift=True)),
         "rescale: fill the picture with the object, the surface",
-        lambda viewer, number: (edits.rescale, edits.rescale_surface)[number](viewer.session),
+        lambda viewer, number: edits.rescale(viewer.session, ("", viewer.session.surface_name)[number]),
     ),
     Binding(
         (Chord("home"),),

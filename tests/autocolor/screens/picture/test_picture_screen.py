@@ -160,7 +160,7 @@ def test_a_stage_is_a_row_and_its_backdrop_has_two_colors(hand: Hand) -> None:
     assert hand.scene.backdrop_colors == (start.replace(stage="floor").backdrop_colors[0], (18, 52, 86))
     hand.viewer.session.choose_surface("stage")
     with pytest.raises(UsageError, match="the view fills with the object, not with its stage"):
-        edits.rescale_surface(hand.viewer.session)
+        edits.rescale(hand.viewer.session, "stage")
 
 
 def test_highlights_are_marked_while_the_pointer_rests_on_the_object(tmp_path: Path) -> None:
