@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, lru_cache, partial
+from functools import lru_cache, partial
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers
+from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.orbit import side_name, target_of
@@ -41,12 +41,11 @@ from autocolor.widgets.items import (
     between,
     clipped,
     joined,
-    rounded,
+    segments,
     text,
     together,
 )
 from autocolor.widgets.widget import NOWHERE
-from ramtek_emu import instructions
 
 # Points that can be moved.
 
@@ -88,7 +87,7 @@ class MovablePoint(NamedTuple):
         if self.what == EYE:
             return scene.with_view(eye=point)
         if self.what == TARGET and scene.view.target is None:
-            return scene.with_view(direction=_step(scene.view.eye, point))
+            return scene.with_view(direction=np.subtract(point, scene.view.eye).tolist())
         if self.what == TARGET:
             return scene.with_view(target=point)
         if self.what == LIGHT:
@@ -97,7 +96,7 @@ class MovablePoint(NamedTuple):
             return scene.with_light_in_world(self.light, aim=point)
         if self.what == DIRECTION:
             start = scene.lights_in_world[self.light].position
-            return scene.with_light_in_world(self.light, direction=_step(start, point))
+            return scene.with_light_in_world(self.light, direction=np.subtract(point, start).tolist())
         value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
         value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
         flaps: Any = {self.axis: {self.end: value}}
@@ -110,11 +109,6 @@ class MovablePoint(NamedTuple):
             return f"{self.label}: " + "  ".join(f"{axis} {views.rounded(place):g}" for axis, place in places)
         flap = getattr(scene.lights[self.light].flaps, self.axis)
         return f"{self.label} {views.rounded(getattr(flap, self.end)):g}"
-
-
-def _step(start: Vector, end: Vector) -> Vector:
-    """The direction from a point to another."""
-    return end[0] - start[0], end[1] - start[1], end[2] - start[2]
 
 
 class MarkedPoint(NamedTuple):
@@ -168,9 +162,8 @@ def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
     """The end of a light's arrow: its aim, or a point in its direction; None without either."""
     if light.aim is not None or light.axis is None:
         return light.aim
-    x, y, z = light.position
-    length = DIRECTION_LENGTH / views.scale
-    return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
+    x, y, z = light.position + DIRECTION_LENGTH / views.scale * np.array(light.axis)
+    return float(x), float(y), float(z)
 
 
 def _flaps_in(light: Light, views: OrthographicViews, side: ViewSide) -> Iterator[MarkedPoint]:
@@ -247,13 +240,10 @@ def sign_of(what: str, mark: PointMark) -> Floats:
 
 def picture_corners(view: View, target: Vector) -> Floats:
     """The points at the corners of the picture, (4, 3), at the depth of the target, from the upper left."""
-    right, down, forward = view.axes
-    right, down = ASPECT * view.half_height(ASPECT) * right, view.half_height(ASPECT) * down
-    depth = float(forward @ (np.array(target) - np.array(view.eye)))
-    rays = np.array(
-        [forward + across for across in (-right - down, right - down, right + down, down - right)]
-    )
-    return np.array(view.eye) + depth * rays
+    places = np.array([(-ASPECT, -1), (ASPECT, -1), (ASPECT, 1), (-ASPECT, 1)])
+    rays = view.axes[2] + view.half_height(ASPECT) * places @ view.axes[:2]
+    corners: Floats = np.array(view.eye) + view.axes[2] @ np.subtract(target, view.eye) * rays
+    return corners
 
 
 # The outline of a light's cone as it is seen in one of the three views.
@@ -309,15 +299,6 @@ PLACES: Final = np.array([(1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (
 """The places around a cross, to the right and down, in order of preference."""
 
 
-@cache
-def places_around(digits: int) -> Numbers:
-    """The areas for a numeral of some digits around a cross at (0, 0), (places, 4), the preferred first."""
-    size = np.array([CHARACTER * digits, CHARACTER_LINES])
-    gaps = REACH + np.where(PLACES.all(axis=1), AWAY, 2 * AWAY)[:, np.newaxis]
-    rings = [PLACES * (gaps + RING * ring + size // 2) - size // 2 for ring in range(RINGS)]
-    return np.concatenate([np.concatenate(rings), np.concatenate(rings) + size - 1], axis=1)
-
-
 @lru_cache(maxsize=64)
 def numerals(
     crosses: tuple[tuple[int, int, int], ...], area: Area, taken: tuple[Area, ...]
@@ -327,16 +308,19 @@ def numerals(
     The crosses and the `taken` areas stay free if possible.
     """
     occupied = [*taken, *(cross_area(element, line) for _, element, line in crosses)]
+    gaps = REACH + np.where(PLACES.all(axis=1), AWAY, 2 * AWAY)[:, np.newaxis]
     placed = []
-    for number, element, line in crosses:
-        places = places_around(len(str(number))) + np.array([element, line, element, line])
-        others, starts, ends = np.array(occupied), places[:, :2], places[:, 2:]
+    for number, *cross in crosses:
+        size = np.array([CHARACTER * len(str(number)), CHARACTER_LINES])
+        rings = [PLACES * (gaps + RING * ring + size // 2) - size // 2 for ring in range(RINGS)]
+        starts = np.concatenate(rings) + cross
+        others, ends = np.array(occupied), starts + size - 1
         overlaps = (starts[:, None] <= others[:, 2:]) & (ends[:, None] >= others[:, :2])
         counts = overlaps.all(axis=2).sum(axis=1)
         is_outside = (starts < area[:2]).any(axis=1) | (ends > area[2:]).any(axis=1)
         # The first of the places that overlap the fewest areas.
         best = np.where(is_outside, len(others) + 1, counts).argmin()
-        placed.append(Area(*places[best].tolist()))
+        placed.append(Area(*starts[best].tolist(), *ends[best].tolist()))
         occupied.append(placed[-1])
     return tuple(placed)
 
@@ -365,8 +349,8 @@ def marks_in(
     name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
     title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, LIGHT_GRAY)
     others, ours = points_in(scene, views, side, chosen)
-    edges = edge_items(views, side, scene.view, target_of(scene))
-    items = [title, *edges, *point_items(views, side, others, False), *point_items(views, side, ours, True)]
+    items = [title, edge_item(views, side, scene.view, target_of(scene))]
+    items += [*point_items(views, side, others, False), *point_items(views, side, ours, True)]
     eyes = [sign_of(EYE, each.mark) for each in (*others, *ours) if each.movable.what == EYE]
     taken = [title.area, *(area_of(eye.reshape(-1, 2), limit=side.area) for eye in eyes)]
     handles = []
@@ -421,21 +405,18 @@ def point_items(
                 layers[shaft].append(arrow(each.mark.at, views.position(side, each.end)))
                 if light is not None:
                     layers[cone].append(cone_outline(views, side, light, each.end))
-    return tuple(item for word, parts in layers.items() for item in drawn_item(parts, word, side))
+    return [strokes_item(parts, word, side) for word, parts in layers.items() if parts]
 
 
 @lru_cache(maxsize=64)
-def edge_items(views: OrthographicViews, side: ViewSide, view: View, target: Vector) -> Sequence[Item]:
-    """The items of the picture's edges at the depth of the target, and of the rays to its corners."""
+def edge_item(views: OrthographicViews, side: ViewSide, view: View, target: Vector) -> Item:
+    """The item of the picture's edges at the depth of the target, and of the rays to its corners."""
     corners = views.positions(side, picture_corners(view, target))
     rays = between(np.broadcast_to(views.position(side, view.eye), (4, 2)), corners)
-    return drawn_item([rays, joined([*corners, corners[0]])], SLATE, side)
+    return strokes_item([rays, joined([*corners, corners[0]])], SLATE, side)
 
 
-def drawn_item(parts: Sequence[Floats], word: int, side: ViewSide) -> Sequence[Item]:
-    """The item of all strokes of one word, clipped at the area of a view; none if there are no strokes."""
+def strokes_item(parts: Sequence[Floats], word: int, side: ViewSide) -> Item:
+    """The item of all strokes of one word, clipped at the area of a view."""
     strokes = clipped(together(parts), side.area)
-    if not len(strokes):
-        return ()
-    stream = instructions.write_segments(rounded(strokes), word).tobytes()
-    return (Item(area_of(strokes.reshape(-1, 2)), stream),)
+    return segments(strokes, word, area_of(strokes.reshape(-1, 2), margin=1, limit=side.area))

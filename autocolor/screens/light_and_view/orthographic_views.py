@@ -16,7 +16,7 @@ from autocolor.arrays import Floats, bounds_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
 from autocolor.scene.orbit import target_of
 from autocolor.scene.scene import Scene
-from autocolor.widgets.items import Area
+from autocolor.widgets.items import Area, clipped
 from autocolor.widgets.menu import WORK
 
 # The areas of the views: the quarters of the work area.
@@ -136,14 +136,9 @@ class OrthographicViews(NamedTuple):
         to = area.middle if end is None else self.position(side, end)
         if not area.has(*to):
             to = area.middle
-        step = at[0] - to[0], at[1] - to[1]
-        # On the way from `to`, the nearest edge counts.
-        share = min(
-            ((high if along > 0 else low) - start) / along
-            for start, along, low, high in zip(to, step, area[:2], area[2:], strict=True)
-            if along
-        )
-        return PointMark((to[0] + share * step[0], to[1] + share * step[1]), at, 1 / share if share else 1.0)
+        _, _, element, line = clipped(np.array([(*to, *at)]), area)[0].tolist()
+        way = math.dist(to, (element, line))
+        return PointMark((element, line), at, math.dist(to, at) / way if way else 1.0)
 
     def placed(self, side: ViewSide, point: Vector, element: int, line: int) -> Vector:
         """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.
