@@ -88,7 +88,7 @@ def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> N
 
 
 HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
-    "plain": ({}, 1, lambda scene: turned(scene, *turn_between(400, 100, 430, 110))),
+    "plain": ({}, 1, lambda scene: turned(scene, *turn_between(0, 0, 30, 10))),
     "Shift": ({"shift": True}, 1, lambda scene: panned(scene, 30, 10, 480, 640)),
     "middle": ({}, 2, lambda scene: panned(scene, 30, 10, 480, 640)),
     "Ctrl": ({"control": True}, 1, lambda scene: moved(scene, wheel_ratio(-10 / 8))),
@@ -99,9 +99,13 @@ HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
 def test_a_drag_turns_moves_or_comes_closer(hand: Hand, name: str) -> None:
     held, button, view_of = HELD[name]
     before, viewer = hand.scene, hand.viewer
-    viewer.on_pointer(400, 100, "press", button, 1, **held)
-    viewer.on_pointer(430, 110, "move", 0, 1, **held)
-    viewer.on_pointer(430, 110, "release", button, 1, **held)
+    # Only a plain drag at a highlight would move it; also a drag that begins beside its reach turns.
+    element, line = hand.handle("highlight of key")
+    element += 9 if name == "plain" else 0
+    viewer.on_pointer(element, line, "press", button, 1, **held)
+    viewer.on_pointer(element + 30, line + 10, "move", 0, 1, **held)
+    viewer.on_pointer(element + 30, line + 10, "release", button, 1, **held)
+    assert hand.scene.lights is before.lights
     assert viewer.studio.scene.view == view_of(before)
     assert viewer.studio.history.timeline.views_back == (before.view,)
     viewer.studio.view_back()
