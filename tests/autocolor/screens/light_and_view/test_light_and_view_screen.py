@@ -157,22 +157,18 @@ def test_an_end_of_a_flap_is_dragged_as_far_as_the_other(end: str, other: float,
     assert is_undone_at_once(hand, before)
 
 
-def test_dragging_beside_everything_moves_the_views_together_and_no_edit_is_made() -> None:
-    hand = opened(boxed(KEY))
-    before, scene = screen_of(hand).views, hand.scene
-    hand.drag((20, 440), (30, 430), (40, 420))
-    assert screen_of(hand).views == before.panned(FRONT, 20, -20)
-    assert hand.scene is scene
-
-
-def test_rescale_moves_nearer_and_fits_everything_the_object_and_a_surface() -> None:
+def test_the_views_are_rescaled_moved_and_fitted_to_everything_the_object_and_a_surface() -> None:
     hand = opened(boxes_scene(), shows_all=False)
     views = fitted_views(hand.scene.object_coordinates)
     assert screen_of(hand).views == views
     hand.pick("rescale", 0.95)
     assert screen_of(hand).views == views.zoomed(1.25)
     hand.viewer.on_pointer(20, 440, "wheel up", steps=2)
-    assert screen_of(hand).views.scale == pytest.approx(1.25**2 * views.scale)
+    views = views.zoomed(1.25).zoomed(1.25)
+    assert screen_of(hand).views == views
+    # A drag beside everything moves the three views together.
+    hand.drag((20, 440), (40, 420))
+    assert screen_of(hand).views == views.panned(FRONT, 20, -20)
     hand.viewer.session.choose_surface("box 1")
     for label, share, points, shown in (
         ("fit all", 0.25, shown_points(hand.scene), "everything"),
@@ -182,6 +178,7 @@ def test_rescale_moves_nearer_and_fits_everything_the_object_and_a_surface() -> 
         hand.pick(label, share)
         assert screen_of(hand).views == fitted_views(points)
         assert hand.message == f"the views show {shown}"
+    assert hand.scene is hand.viewer.studio.history.start
 
 
 def test_a_scene_without_polygons_and_lights_has_three_views_that_stay() -> None:
