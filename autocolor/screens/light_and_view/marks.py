@@ -51,11 +51,11 @@ from autocolor.widgets.widget import NOWHERE
 
 EYE: Final = "eye"
 TARGET: Final = "target"
-LIGHT: Final = "light"
+LIGHT: Final = "position"
 AIM: Final = "aim"
 DIRECTION: Final = "direction"
 FLAP: Final = "flap"
-"""The kinds of movable points."""
+"""The kinds of movable points: the columns of the view and of a light, and the ends of flaps."""
 
 DIRECTION_LENGTH: Final = 40.0
 """Assumed: the length of the arrow of a light with a direction and no aim, in elements."""
@@ -84,23 +84,17 @@ class MovablePoint(NamedTuple):
 
     def put(self, scene: Scene, point: Vector) -> Scene:
         """The scene with the movable point at `point`. An end of a flap does not pass the other end."""
-        if self.what == EYE:
-            return scene.with_view(eye=point)
+        if self.what == FLAP:
+            value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
+            value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
+            flaps: Any = {self.axis: {self.end: value}}
+            return scene.with_light(self.light, flaps=flaps)
+        start = scene.lights_in_world[self.light].position if self.light else scene.view.eye
+        step = np.subtract(point, start).tolist()
+        changes: Any = {self.what: step if self.what == DIRECTION else point}
         if self.what == TARGET and scene.view.target is None:
-            return scene.with_view(direction=np.subtract(point, scene.view.eye).tolist())
-        if self.what == TARGET:
-            return scene.with_view(target=point)
-        if self.what == LIGHT:
-            return scene.with_light_in_world(self.light, position=point)
-        if self.what == AIM:
-            return scene.with_light_in_world(self.light, aim=point)
-        if self.what == DIRECTION:
-            start = scene.lights_in_world[self.light].position
-            return scene.with_light_in_world(self.light, direction=np.subtract(point, start).tolist())
-        value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
-        value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
-        flaps: Any = {self.axis: {self.end: value}}
-        return scene.with_light(self.light, flaps=flaps)
+            changes = {DIRECTION: step}
+        return scene.with_light_in_world(self.light, **changes) if self.light else scene.with_view(**changes)
 
     def message(self, scene: Scene, point: Vector, views: OrthographicViews) -> str:
         """The text of the message line for the movable point at `point` of a scene."""

@@ -53,12 +53,6 @@ class DepthPicture(NamedTuple):
     depths: Floats
     parts: Indices
 
-    @property
-    def focal(self) -> float:
-        """The focal length in pixels: the size of a pixel is the depth over it."""
-        lines, elements = self.depths.shape
-        return focal_length(lines, elements, self.view.field_of_view)
-
 
 # Depth pictures, by the scan lines and the depth test of the renderer.
 
@@ -136,7 +130,10 @@ def outlines_and_borders(picture: DepthPicture) -> tuple[Booleans, Booleans]:
     Both are (lines, elements).
     """
     is_seen = picture.parts != NO_PART
-    depths = picture.depths * (picture.focal / picture.depths.min() if is_seen.any() else 1.0)
+    # The size of a pixel is the depth over the focal length.
+    lines, elements = is_seen.shape
+    focal = focal_length(lines, elements, picture.view.field_of_view)
+    depths = picture.depths * (focal / picture.depths.min() if is_seen.any() else 1.0)
     # The stage lies behind the object, and has no lines but its outline.
     depths = np.where(picture.parts == STAGE, 2 * depths.max(where=is_seen, initial=0.0), depths)
     outlines, borders = np.zeros((2, *depths.shape), np.bool_)
@@ -205,8 +202,9 @@ def crease_edges(mesh: Mesh, numbers: Indices) -> Indices:
 
 def crease_pixels(picture: DepthPicture, coordinates: Floats, creases: Indices) -> Booleans:
     """The pixels at which a depth picture sees creases, (lines, elements); `coordinates` are (nodes, 3)."""
-    view, depths, focal = picture.view, picture.depths, picture.focal
-    size = np.array(depths.shape[::-1])[:, None]
+    view, depths, (lines, elements) = picture.view, picture.depths, picture.depths.shape
+    size = np.array([[elements], [lines]])
+    focal = focal_length(lines, elements, view.field_of_view)
     ends = [rotated(view.axes, np.take(coordinates.T, nodes, axis=1), view.eye) for nodes in creases]
     # Leave out the creases that pass the eye.
     before_eye = (ends[0][2] > 0) & (ends[1][2] > 0)

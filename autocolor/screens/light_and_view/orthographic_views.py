@@ -166,16 +166,14 @@ class OrthographicViews(NamedTuple):
         next. Paper: Figure 5, RESCALE moves closer or farther away.
         """
         finest = max(1 / LARGEST_COORDINATE, FINEST * max(map(abs, self.center)))
-        return OrthographicViews(
-            self.center, min(max(self.scale * ratio, 1 / LARGEST_COORDINATE), 1 / finest)
-        )
+        return self._replace(scale=min(max(self.scale * ratio, 1 / LARGEST_COORDINATE), 1 / finest))
 
     def panned(self, side: ViewSide, elements: float, lines: float) -> OrthographicViews:
         """The views of the same scale, moved so that every point of a view moves by elements and lines."""
         center = list(self.center)
         center[side.right] -= elements / self.scale
         center[side.up] += lines / self.scale
-        return OrthographicViews((center[0], center[1], center[2]), self.scale).zoomed(1)
+        return self._replace(center=(center[0], center[1], center[2])).zoomed(1)
 
 
 def fitted_views(points: Floats) -> OrthographicViews:

@@ -34,7 +34,6 @@ from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER_LINES,
-    SCREEN,
     WHITE,
     YELLOW,
     Area,
@@ -204,18 +203,12 @@ class LightHandles:
                 seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
                 items += rim_items(seen, area)
                 label = f"end of the {name_of(rim)} of {name}"
-                for line, element in _in_cells(seen).tolist():
+                _, first_in_cells = np.unique(seen // CELL, axis=0, return_index=True)
+                for line, element in seen[first_in_cells].tolist():
                     handles.append(self._handle(HandleKey(name, rim, (line, element)), line, element, label))
             return handles, items
 
         return self._rims.of(at_rims, self.session.scene.lights, name, sight.points, area)
-
-
-def _in_cells(pixels: Indices) -> Indices:
-    """One of the pixels, (n, 2) line and element, in each cell."""
-    lines, elements = (pixels // CELL).T
-    _, chosen = np.unique(lines * SCREEN.width + elements, return_index=True)
-    return pixels[chosen]
 
 
 def rim_items(pixels: Indices, area: Area) -> list[Item]:
