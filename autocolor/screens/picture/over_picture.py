@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import ClassVar, Final, NamedTuple
+from typing import ClassVar, Final
 
 from autocolor.checks import Color
 from autocolor.mapping.display_image import DisplayImage
@@ -80,8 +80,8 @@ class OverPicture(Screen):
 
     def hint(self, element: int, line: int) -> str:
         """The surface, the part and the level at a place."""
-        pointed = self.pointed(element, line)
-        return self.help if pointed is None else str(pointed)
+        names, value = self.pointed(element, line)
+        return f"{' - '.join(names)}, {value}" if names else self.help
 
     def pick(self, gesture: Gesture) -> None:
         """Choose a surface, explain a pixel, or end comparing."""
@@ -94,13 +94,13 @@ class OverPicture(Screen):
             session.explains, session.pixel = False, (gesture.line, gesture.element)
             session.turn_to(EXPLAIN)
             return
-        pointed = self.pointed(gesture.element, gesture.line)
-        if pointed is None:
+        names, value = self.pointed(gesture.element, gesture.line)
+        if not names:
             session.tell("the backdrop" if session.scene.backdrop_colors else "the background")
             return
-        session.choose_surface(pointed.surface)
-        session.part_name = pointed.part
-        session.tell(str(pointed))
+        session.part_name = names[0]
+        session.choose_surface(names[-1])
+        session.tell(f"{' - '.join(names)}, {value}")
 
     def sample(self, element: int, line: int) -> Sample | None:
         """The pixel of the picture at a place."""
@@ -133,36 +133,24 @@ class OverPicture(Screen):
         """Move closer, or farther."""
         edits.move(self.session, wheel_ratio(gesture.steps))
 
-    def pointed(self, element: int, line: int) -> Pointed | None:
-        """The surface and the part at a place; None on the background, and while another state is shown."""
+    def pointed(self, element: int, line: int) -> tuple[list[str], str]:
+        """The names of the part and the surface at a place, or the one name of both, and the value there.
+
+        There are no names on the background, and while another state is shown.
+        """
         sample, studio = self.sample(element, line), self.session.studio
         if sample is None:
-            return None
+            return [], ""
         seen, image, scalar = studio.seen_at(line, element), studio.display_image, studio.scene.scalar
-        name, level, part = sample.surface, sample.level, "" if seen is None else seen.part
+        name, level = sample.surface, sample.level
+        names = list(dict.fromkeys([seen.part, name] if seen is not None else [name]))
         bands = image.bands.get(name)
         if bands is None or scalar is None:
-            return Pointed(name, part, f"{image.meaning} {level} of {image.ranges[name].levels - 1}")
+            return names, f"{image.meaning} {level} of {image.ranges[name].levels - 1}"
         values, block = image.picture.scalar, image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"
-        return Pointed(name, part, f"{scalar.name} {shown}, shade {level % bands.shades + 1}")
-
-
-class Pointed(NamedTuple):
-    """The surface and the part under the pointer, and the value of the word there, as text."""
-
-    surface: str
-    part: str
-    value: str
-
-    @property
-    def names(self) -> list[str]:
-        """The names of the part and the surface, or the one name of both."""
-        return list(dict.fromkeys(filter(None, (self.part, self.surface))))
-
-    def __str__(self) -> str:
-        return f"{' - '.join(self.names)}, {self.value}"
+        return names, f"{scalar.name} {shown}, shade {level % bands.shades + 1}"
 
 
 HELD: Final = "held"

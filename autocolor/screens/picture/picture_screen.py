@@ -64,11 +64,9 @@ class PictureScreen(OverPicture):
         )
 
     def hint(self, element: int, line: int) -> str:
-        pointed = self.pointed(element, line)
-        if pointed is None:
-            return self.help
+        names, _ = self.pointed(element, line)
         does = "click explains" if self.session.explains else "drag turns, click chooses, Shift explains"
-        return f"{', '.join(pointed.names)}: {does}"
+        return f"{', '.join(names)}: {does}" if names else self.help
 
     def _rows(self) -> Sequence[Widget]:
         session, light, up = self.session, self.session.light_name, seeming_up(self.session)
