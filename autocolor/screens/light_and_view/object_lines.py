@@ -91,21 +91,6 @@ def depth_picture(mesh: Mesh, view: View, lines: int, elements: int, numbers: In
     return DepthPicture(view, depths.reshape(lines, elements), parts.reshape(lines, elements))
 
 
-def depth_picture_of_points(
-    points: VisiblePoints, lines: int, elements: int, numbers: Indices
-) -> DepthPicture:
-    """The depth picture of the visible points of a picture, at the middles of so many lines and elements.
-
-    `numbers` are as in `depth_picture`.
-    """
-    depths = np.full(points.lines * points.elements, np.inf)
-    parts = np.full(len(depths), NO_PART)
-    depths[points.pixels], parts[points.pixels] = points.depths, numbers.take(points.parts.numbers - 1)
-    shape = points.lines, points.elements
-    small = (sampled(each.reshape(shape), lines, elements) for each in (depths, parts))
-    return DepthPicture(points.view, *small)
-
-
 def sampled(table: AnyArray, lines: int, elements: int) -> AnyArray:
     """A raster of another size: each value is that at the middle of its place."""
     rows, columns = (
@@ -268,8 +253,6 @@ def moved(words: Words, side: ViewSide, before: OrthographicViews, views: Orthog
 
     Pixels are left out or repeated.
     """
-    if before == views:
-        return words
     shifted = np.pad(words, (0, 1), constant_values=NIGHT)
     for direction, (count, axis, sign) in enumerate(
         zip(words.shape, (side.up, side.right), (-1, 1), strict=True)
@@ -319,9 +302,13 @@ class ObjectLines:
         The lines of a coarser picture are as coarse as the picture.
         """
         numbers, creases = self._object_of(scene)
-        lines, elements = min(points.lines, area.height), min(points.elements, area.width)
-        picture = depth_picture_of_points(points, lines, elements, numbers)
-        return sampled(line_words(picture, scene.mesh, creases), area.height, area.width)
+        raster, size = (points.lines, points.elements), (area.height, area.width)
+        depths, parts = np.full(raster, np.inf), np.full(raster, NO_PART)
+        depths.put(points.pixels, points.depths)
+        parts.put(points.pixels, numbers.take(points.parts.numbers - 1))
+        small = (sampled(each, *map(min, raster, size)) for each in (depths, parts))
+        picture = DepthPicture(points.view, *small)
+        return sampled(line_words(picture, scene.mesh, creases), *size)
 
     def _object_of(self, scene: Scene) -> tuple[Indices, Indices]:
         """The numbers of the parts, and the creases. If all parts are stage, they are the object."""

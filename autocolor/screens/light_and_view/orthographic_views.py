@@ -88,9 +88,8 @@ class PointMark(NamedTuple):
 
     def dragged(self, element: int, line: int) -> tuple[int, int]:
         """Where the point goes if the mark goes to a pixel: as many times as far as the point is farther."""
-        (at_element, at_line), (from_element, from_line) = self.at, self.place
-        across, down = element - from_element, line - from_line
-        return round(at_element + self.ratio * across), round(at_line + self.ratio * down)
+        across, down = element - self.place[0], line - self.place[1]
+        return round(self.at[0] + self.ratio * across), round(self.at[1] + self.ratio * down)
 
 
 Coordinate = TypeVar("Coordinate", float, Floats)
@@ -146,11 +145,9 @@ class OrthographicViews(NamedTuple):
         The third coordinate stays exactly, and so does a coordinate already at this element or line.
         Assumed: the coordinates are rounded to decimals that place them within a tenth of a pixel.
         """
-        moved, present, middle = list(point), self.position(side, point), side.area.middle
-        for axis, pixel, now, center, sign in (
-            (side.right, element, present[0], middle[0], 1),
-            (side.up, line, present[1], middle[1], -1),
-        ):
+        moved, axes = list(point), (side.right, side.up)
+        places = zip((element, line), self.position(side, point), side.area.middle, strict=True)
+        for axis, sign, (pixel, now, center) in zip(axes, (1, -1), places, strict=True):
             if abs(now - pixel) > 0.5:
                 moved[axis] = self.rounded(self.center[axis] + sign * (pixel - center) / self.scale)
         return moved[0], moved[1], moved[2]
