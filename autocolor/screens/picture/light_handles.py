@@ -6,7 +6,7 @@ The user drags a highlight or a rim to a pixel, and the light is placed so that 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final, Literal, NamedTuple
 
@@ -85,14 +85,11 @@ class LightHandles:
         """The handles of the lights that are on; none while something moves."""
         if self.session.moving:
             return ()
-        lights = self._seen_lights()
         # Of several handles at the same distance, the last is grabbed.
-        handles = [*self._at_rims(lights)[0]]
-        for light in lights:
-            place = self._highlight(light)
-            if place is not None:
-                key = HandleKey(light.name, HIGHLIGHT)
-                handles.append(self._handle(key, *place, f"highlight of {light.name}"))
+        handles = [*self._at_rims()[0]]
+        for light, line, element in self._highlights():
+            key = HandleKey(light.name, HIGHLIGHT)
+            handles.append(self._handle(key, line, element, f"highlight of {light.name}"))
         return handles
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
@@ -115,17 +112,13 @@ class LightHandles:
         and the picture comes sooner. Measured on the coupe: five rims take 8 of 20 ms, and a highlight a
         third of a light's drag.
         """
-        lights = self._seen_lights()
-        items = [] if self.session.moving else [*self._at_rims(lights)[1]]
+        items = [] if self.session.moving else [*self._at_rims()[1]]
         numbers = {light.name: number for number, light in enumerate(self.session.scene.lights, start=1)}
-        for light in lights:
-            is_chosen = light.name == self.session.light_name
-            place = self._highlight(light) if is_chosen or not self.session.moving else None
-            if place is not None:
-                word, (line, element) = YELLOW if is_chosen else WHITE, place
-                items += highlight_items(element, line, self.area, word)
-                beside = element + 2 * ARM + 2, line - CHARACTER_LINES // 2
-                items.append(text(str(numbers[light.name]), *beside, word, BLACK))
+        for light, line, element in self._highlights():
+            word = YELLOW if light.name == self.session.light_name else WHITE
+            items += highlight_items(element, line, self.area, word)
+            beside = element + 2 * ARM + 2, line - CHARACTER_LINES // 2
+            items.append(text(str(numbers[light.name]), *beside, word, BLACK))
         return items
 
     def _handle(self, key: HandleKey, line: int, element: int, label: str) -> Handle:
@@ -161,13 +154,14 @@ class LightHandles:
         lights = [light for light in session.scene.lights_in_world if light.on]
         return sorted(lights, key=lambda light: light.name == chosen)
 
-    def _highlight(self, light: Light) -> tuple[int, int] | None:
-        """The line and element of the highlight on the chosen surface, else on any surface, in the area."""
-        source, placed = self._placed
-        place: tuple[int, int] | None = placed
-        if source != self._source_of(light):
-            place = None if self.session.moving else self._search(light.name)
-        return place if place is not None and self.area.has(*reversed(place)) else None
+    def _highlights(self) -> Iterator[tuple[Light, int, int]]:
+        """The lights whose highlight is in the area, each with the line and element of the highlight."""
+        for light in self._seen_lights():
+            place: tuple[int, int] | None = self._placed[1]
+            if self._placed[0] != self._source_of(light):
+                place = None if self.session.moving else self._search(light.name)
+            if place is not None and self.area.has(*reversed(place)):
+                yield light, *place
 
     def _source_of(self, light: Light) -> object:
         """The visible points and all of a light on which the place of its highlight depends."""
@@ -175,7 +169,10 @@ class LightHandles:
         return self.session.studio.sight.points, light.name, light.position, axis
 
     def _search(self, light: str) -> tuple[int, int] | None:
-        """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E)."""
+        """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E).
+
+        It is on the chosen surface, else on any surface.
+        """
         studio, surface = self.session.studio, self.session.surface_name
         planes = studio.picture.light_planes.get(light)
         # Where words stand for normals, or there are no planes, the place depends on all of the scene.
@@ -191,10 +188,10 @@ class LightHandles:
 
         return self._searched.setdefault(light, Cached()).of(search, source, surface)
 
-    def _at_rims(self, lights: Sequence[Light]) -> tuple[Sequence[Handle], Sequence[Item]]:
-        """The handles and the marks at the rims of the chosen light, if it is on; `lights` has it last."""
+    def _at_rims(self) -> tuple[Sequence[Handle], Sequence[Item]]:
+        """The handles and the marks at the rims of the chosen light, if it is on."""
         sight, area, name = self.session.studio.sight, self.area, self.session.light_name
-        if not self._has_rims or not lights or lights[-1].name != name:
+        if not self._has_rims or name not in [light.name for light in self._seen_lights()]:
             return (), ()
 
         def at_rims() -> tuple[Sequence[Handle], Sequence[Item]]:

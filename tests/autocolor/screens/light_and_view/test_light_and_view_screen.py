@@ -120,20 +120,6 @@ def test_the_lines_of_a_light_that_is_held_go_when_it_is_let_go_of() -> None:
         assert (hand.display.words[240:440, element] == SLATE).sum() < 100
 
 
-def test_a_place_that_the_scene_refuses_is_told_and_the_drag_goes_on() -> None:
-    hand = opened(boxed(Light("key", (2.0, -3.0, 0.5), aim=(0.5, 0.5, 0.5))))
-    # The light is dragged to its aim.
-    hand.drag(place_of(hand, MovablePoint(AIM, TOP, "key")), (60, 70))
-    hand.grab(*place_of(hand, MovablePoint(LIGHT, TOP, "key")))
-    hand.move(100, 100)
-    near = hand.scene
-    hand.move(60, 70)
-    assert hand.scene is near
-    assert hand.viewer.session.news.is_warning
-    hand.move(50, 90)
-    assert where(hand, TOP) == pytest.approx((50, 90), abs=0.6)
-
-
 def test_a_view_without_a_target_looks_where_the_end_of_its_arrow_was_put() -> None:
     hand = opened(boxed(KEY).replace(view=View((-2.0, -3.0, 2.0), direction=(2.5, 3.5, -1.5))))
     end = point_of(hand, MovablePoint(TARGET, TOP))

@@ -24,7 +24,7 @@ from autocolor.screens.light_and_view.marks import (
     numerals,
     picture_corners,
 )
-from autocolor.screens.light_and_view.orthographic_views import EDGE, FRONT, SIDE, SIDES, TOP, ViewSide
+from autocolor.screens.light_and_view.orthographic_views import FRONT, SIDE, SIDES, TOP, ViewSide
 from autocolor.screens.screen import Handle
 from autocolor.testing import lights, views
 from autocolor.visibility.projection import focal_length
@@ -54,16 +54,6 @@ def test_everything_that_a_view_shows_can_be_taken_hold_of_there() -> None:
         }
         # The arrow of a direction has a length on the screen, of 4 units at this scale.
         assert "spot: direction: x 1  y 2  z -1" in [each.label for each in found]
-
-
-def test_a_light_or_an_eye_outside_of_a_view_can_be_taken_hold_of_at_its_edge() -> None:
-    far = boxed(KEY.replace(position=(1e6, 0.0, 0.0))).with_view(eye=(0.0, 0.0, 1e6))
-    places = {movable_of(each): (each.element, each.line) for side in SIDES for each in handles_in(far, side)}
-    # In the side view, the light is far behind and within the view.
-    behind = tuple(map(round, VIEWS.position(SIDE, (1e6, 0.0, 0.0))))
-    assert places[MovablePoint(LIGHT, SIDE, "key")] == behind
-    assert places[MovablePoint(LIGHT, TOP, "key")][0] == TOP.area.inset(EDGE).right
-    assert places[MovablePoint(EYE, SIDE)][1] == SIDE.area.inset(EDGE).top
 
 
 def test_what_is_chosen_goes_before_the_others() -> None:

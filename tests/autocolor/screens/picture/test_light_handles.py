@@ -69,8 +69,8 @@ def test_a_highlight_that_is_picked_goes_where_the_second_pick_is(hand: Hand) ->
 def test_a_dragged_highlight_follows_in_one_step(at_lights: Hand) -> None:
     hand, before = at_lights, at_lights.scene
     start = hand.handle("highlight of key")
-    # The marks of other highlights are not in the way.
-    hand.drag(start, (330, 240), hand.handle("highlight of fill"), PLACE)
+    # The background is refused, and the drag goes on; the marks of other highlights are not in the way.
+    hand.drag(start, (330, 240), BACKGROUND, hand.handle("highlight of fill"), PLACE)
     studio = hand.viewer.studio
     assert studio.highlight_of("key") == PLACE[::-1]
     assert hand.handle("highlight of key") == PLACE
