@@ -19,12 +19,7 @@ from autocolor.scene.lights import Light
 from autocolor.scene.orbit import side_name, target_of
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import ASPECT, View
-from autocolor.screens.light_and_view.orthographic_views import (
-    AXES,
-    OrthographicViews,
-    PointMark,
-    ViewSide,
-)
+from autocolor.screens.light_and_view.orthographic_views import AXES, OrthographicViews, PointMark, ViewSide
 from autocolor.screens.screen import Handle
 from autocolor.widgets.items import (
     BLUE,

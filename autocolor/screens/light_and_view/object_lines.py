@@ -25,11 +25,7 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
-from autocolor.screens.light_and_view.orthographic_views import (
-    SIDES,
-    OrthographicViews,
-    ViewSide,
-)
+from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, ViewSide
 from autocolor.visibility.camera import rotated
 from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import focal_length, projection

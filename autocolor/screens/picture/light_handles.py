@@ -239,15 +239,14 @@ def message_of(light: Light, what: Literal["highlight"] | Rim, world: World) -> 
     """The message while a part of a light is placed; coordinates have the digits of their bars."""
 
     def shown(axis: str, value: float) -> str:
-        return f"{axis} {number_text(value, world.range_of(axis).step)}"
+        return number_text(value, world.range_of(axis).step)
 
     if what == CONE:
         return f"{light.name}: cone angle {light.cone_angle:.1f} degrees"
     if isinstance(what, tuple) and not isinstance(what, Plane):
         axis, end = what
-        limit = getattr(flaps_of(light)[axis], end)
-        return f"{light.name}: flap {axis}, {end} {number_text(limit, world.range_of(axis).step)}"
+        return f"{light.name}: flap {axis}, {end} {shown(axis, getattr(flaps_of(light)[axis], end))}"
     name, point = light.name, light.position
     if isinstance(what, Plane):
         name, point = next((r.name, r.point) for r in light.half_spaces if r.name == what.half_space)
-    return f"{name}: " + "  ".join(map(shown, "xyz", point))
+    return f"{name}: " + "  ".join(f"{axis} {shown(axis, at)}" for axis, at in zip("xyz", point, strict=True))

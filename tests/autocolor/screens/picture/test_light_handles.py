@@ -118,13 +118,9 @@ def test_a_dragged_highlight_keeps_beside_the_menu(hand: Hand, bring_menu: Calla
 
 # The rims.
 
-
 RIMS: dict[Rim, tuple[str, str]] = {
     "cone": ("end of the cone of key", "key: cone angle {0.cone_angle:.1f} degrees"),
-    ("z", "minimum"): (
-        "end of the flap z, minimum, of key",
-        "key: flap z, minimum {0.flaps.z.minimum:.2f}",
-    ),
+    ("z", "minimum"): ("end of the flap z, minimum, of key", "key: flap z, minimum {0.flaps.z.minimum:.2f}"),
 }
 
 
