@@ -128,22 +128,20 @@ def points_in(
 
     `chosen` is the name of a light, or empty for the eye. A chosen light has its flaps.
     """
-    eye = MovablePoint(EYE, side), scene.view.eye, MovablePoint(TARGET, side), target_of(scene), None
-    arrows: list[tuple[MovablePoint, Vector, MovablePoint, Vector | None, Light | None]] = [eye]
-    for light in scene.lights_in_world:
-        start = MovablePoint(LIGHT, side, light.name)
-        end = start._replace(what=DIRECTION if light.aim is None else AIM)
-        arrows.append((start, light.position, end, arrow_end(views, light), light))
     points: tuple[list[MarkedPoint], list[MarkedPoint]] = [], []
-    for number, (start, point, end, end_point, owner) in enumerate(arrows):
+    for number, light in enumerate([None, *scene.lights_in_world]):
+        start, point, what = MovablePoint(EYE, side), scene.view.eye, TARGET
+        end: Vector | None = target_of(scene)
+        if light is not None:
+            start, point = MovablePoint(LIGHT, side, light.name), light.position
+            what, end = DIRECTION if light.aim is None else AIM, arrow_end(views, light)
         group = points[start.light == chosen]
-        if owner is not None and start.light == chosen:
-            group += _flaps_in(owner, views, side)
-        if end_point is not None:
-            at = views.position(side, end_point)
-            group.append(MarkedPoint(end, end_point, PointMark(at, at), None, owner, number))
-        mark = views.mark(side, point, end_point)
-        group.append(MarkedPoint(start, point, mark, end_point, owner, number))
+        if light is not None and start.light == chosen:
+            group += _flaps_in(light, views, side)
+        if end is not None:
+            at = views.position(side, end)
+            group.append(MarkedPoint(start._replace(what=what), end, PointMark(at, at), None, light, number))
+        group.append(MarkedPoint(start, point, views.mark(side, point, end), end, light, number))
     return tuple(points[False]), tuple(points[True])
 
 
