@@ -36,11 +36,12 @@ from autocolor.widgets.items import (
     between,
     clipped,
     joined,
-    segments,
+    rounded,
     text,
     together,
 )
 from autocolor.widgets.widget import NOWHERE
+from ramtek_emu import instructions
 
 # Points that can be moved.
 
@@ -336,7 +337,7 @@ def marks_in(
     name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
     title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, LIGHT_GRAY)
     others, ours = points_in(scene, views, side, chosen)
-    items = [title, edge_item(views, side, scene.view, target_of(scene))]
+    items = [title, *edge_items(views, side, scene.view, target_of(scene))]
     items += [*point_items(views, side, others, False), *point_items(views, side, ours, True)]
     eyes = [sign_of(EYE, each.mark) for each in (*others, *ours) if each.movable.what == EYE]
     taken = [title.area, *(area_of(eye.reshape(-1, 2), limit=side.area) for eye in eyes)]
@@ -392,18 +393,21 @@ def point_items(
                 layers[shaft].append(arrow(each.mark.at, views.position(side, each.end)))
                 if light is not None:
                     layers[cone].append(cone_outline(views, side, light, each.end))
-    return [strokes_item(parts, word, side) for word, parts in layers.items() if parts]
+    return tuple(item for word, parts in layers.items() for item in drawn_item(parts, word, side))
 
 
 @lru_cache(maxsize=64)
-def edge_item(views: OrthographicViews, side: ViewSide, view: View, target: Vector) -> Item:
-    """The item of the picture's edges at the depth of the target, and of the rays to its corners."""
+def edge_items(views: OrthographicViews, side: ViewSide, view: View, target: Vector) -> Sequence[Item]:
+    """The items of the picture's edges at the depth of the target, and of the rays to its corners."""
     corners = views.positions(side, picture_corners(view, target))
     rays = between(np.broadcast_to(views.position(side, view.eye), (4, 2)), corners)
-    return strokes_item([rays, joined([*corners, corners[0]])], SLATE, side)
+    return drawn_item([rays, joined([*corners, corners[0]])], SLATE, side)
 
 
-def strokes_item(parts: Sequence[Floats], word: int, side: ViewSide) -> Item:
-    """The item of all strokes of one word, clipped at the area of a view."""
+def drawn_item(parts: Sequence[Floats], word: int, side: ViewSide) -> Sequence[Item]:
+    """The item of all strokes of one word, clipped at the area of a view; none if there are no strokes."""
     strokes = clipped(together(parts), side.area)
-    return segments(strokes, word, area_of(strokes.reshape(-1, 2), margin=1, limit=side.area))
+    if not len(strokes):
+        return ()
+    stream = instructions.write_segments(rounded(strokes), word).tobytes()
+    return (Item(area_of(strokes.reshape(-1, 2)), stream),)
