@@ -30,8 +30,8 @@ from autocolor.screens.file_actions import (
 )
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
-from autocolor.screens.input import Gesture, Mouse, Unit, bound_to
-from autocolor.screens.keys import BINDINGS, rows_of_help
+from autocolor.screens.input import Gesture, Mouse, Unit
+from autocolor.screens.keys import BINDINGS, bound_to, rows_of_help
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
@@ -136,7 +136,7 @@ class Viewer:
         """Offer a key to the typed text, the menu, the screen and the key bindings, in this order."""
         if not control and not alt and self._type(name, typed, repeated):
             return True
-        chosen = bound_to(BINDINGS, name, control, shift, alt, typed)
+        chosen = bound_to(name, control, shift, alt, typed)
         if chosen is None:
             return False
         binding, number = chosen
@@ -271,7 +271,7 @@ class Viewer:
             # The lines come in over the whole page. Its items are drawn after the last line.
             return
         if self.session.watches:
-            self.watch()
+            self._watch()
             return
         has_turned = self.board.turn()
         if has_turned:
@@ -334,7 +334,7 @@ class Viewer:
         self._update()
         return may_close
 
-    def watch(self) -> None:
+    def _watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
         self.session.watches = False
         self.session.turn_to(PICTURE)
