@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
+from autocolor.screens.layout import opens
 from autocolor.widgets.menu import MENU, NameList, Section, folded, lines_of, list_of, page_of_menu
 from autocolor.widgets.widget import Choice, Gap, Widget
 
@@ -69,11 +70,17 @@ class MenuState:
         self.opened = "" if self.opened == row.key else row.key
         self._list_page = None
 
-    def list_of(self, choice: Choice) -> NameList:
-        """The open list of a choice."""
-        return list_of(
-            choice, self._list_page, partial(self._take, choice), partial(setattr, self, "_list_page")
+    def opened_of(self, rows: Sequence[Widget]) -> tuple[Widget | None, NameList | None]:
+        """The row whose wide bar or list is open, and its list."""
+        row = (
+            next((row for row in rows if row.key == self.opened and opens(row)), None)
+            if self.opened
+            else None
         )
+        if not isinstance(row, Choice):
+            return row, None
+        turn = partial(setattr, self, "_list_page")
+        return row, list_of(row, self._list_page, partial(self._take, row), turn)
 
     def close(self) -> None:
         """Take the menu away where it comes on demand."""

@@ -21,13 +21,7 @@ from autocolor.screens.action import DRAG, WHEEL, Action
 from autocolor.screens.board import Board
 from autocolor.screens.effects import tell_effect
 from autocolor.screens.entries_screen import EntriesScreen
-from autocolor.screens.file_actions import (
-    FileOnDisk,
-    bring_paints,
-    open_file,
-    remark,
-    save_screenshot,
-)
+from autocolor.screens.file_actions import FileOnDisk, bring_paints, open_file, remark, save_screenshot
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
 from autocolor.screens.input import Gesture, Mouse, Unit
@@ -202,7 +196,7 @@ class Viewer:
             board.take(gesture)
         elif kind == "wheel":
             # On each widget the wheel makes a step of its own.
-            board.point_at(gesture)
+            board.take(gesture._replace(kind="hover"))
             self._do((WHEEL, board.lit and board.lit.key), lambda: board.take(gesture), True, True)
         elif kind == "drag":
             self._do((DRAG, self._drags), lambda: board.take(gesture), True, True)

@@ -27,16 +27,7 @@ from autocolor.widgets.items import (
     pointer,
     text,
 )
-from autocolor.widgets.widget import (
-    MARGIN,
-    ROW_LINES,
-    TEXT_DOWN,
-    Button,
-    Choice,
-    Place,
-    Widget,
-    page_choice,
-)
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Place, Widget, page_choice
 
 MESSAGE_LINES: Final = 16
 """The height of the message line, at the bottom of every screen."""

@@ -31,15 +31,7 @@ from autocolor.scene.kinds import (
 from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References
 from autocolor.widgets.bars import Bar, bar_within, rounded_to
 from autocolor.widgets.items import CHARACTER, Item
-from autocolor.widgets.widget import (
-    MARGIN,
-    Choice,
-    Entry,
-    Place,
-    Switch,
-    Widget,
-    page_choice,
-)
+from autocolor.widgets.widget import MARGIN, Choice, Entry, Place, Switch, Widget, page_choice
 
 Put = Callable[[Mapping[str, object]], object]
 """Changes fields of the row, by name."""
