@@ -26,7 +26,7 @@ from autocolor.screens.message_line import (
     offer_button,
 )
 from autocolor.screens.screen import Content, Handle, Sample, Screen, Surroundings, surface_at
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.session import LEAST_SECONDS, PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import BLACK, NIGHT, ORANGE, WHITE, WIDTH, Item, filled
 from autocolor.widgets.letters import PANEL as LETTER_PANEL
@@ -218,7 +218,7 @@ class Board:
         self.pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
         if hint and hint != self._hint():
-            self.session.shorten_news()
+            self.session.news = self.session.news._replace(seconds=LEAST_SECONDS)
 
     def clear(self) -> None:
         """Take the menu, the pointer and its hint away."""
@@ -307,7 +307,7 @@ class Board:
         by_key = place is None
         if place is None:
             place = Place((widget.area.left + widget.area.right) // 2, widget.area.top)
-        self.menu.use(self.session.screen, widget, self.layout.rows)
+        self.menu.use(self.session.screen, widget)
         is_switched = isinstance(widget, Bar) and widget.is_switched_at(place)
         if opens(widget) and MENU.covers(widget.area) and not is_switched:
             self.menu.open_or_close(widget)
@@ -328,7 +328,7 @@ class Board:
         handle = self.handle_at(*self.pointer) if is_plain else None
         if widget is not None:
             self._grabbed = None if widget.why_not else widget
-            self.menu.use(self.session.screen, widget, self.layout.rows)
+            self.menu.use(self.session.screen, widget)
         elif handle is not None:
             self._grabbed = handle
             # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
@@ -361,7 +361,7 @@ class Board:
         widget = self.layout.widget_at(*self.pointer)
         if widget is not None:
             if not widget.why_not:
-                self.menu.use(self.session.screen, widget, self.layout.rows)
+                self.menu.use(self.session.screen, widget)
                 widget.nudge(gesture.steps)
         elif not self.is_covered(*self.pointer):
             self.content.wheel(gesture)
@@ -411,7 +411,7 @@ class Board:
         if name in ("up", "down"):
             self._move_light(1 if name == "down" else -1)
         elif row is not None and name in ("left", "right") and not row.why_not:
-            self.menu.use(self.session.screen, row, self.layout.rows)
+            self.menu.use(self.session.screen, row)
             row.nudge(1 if name == "right" else -1)
         elif row is not None and name in ("return", "space", "enter"):
             self.pick_widget(row)

@@ -183,7 +183,7 @@ class SwatchField(Widget):
 
     def hint_at(self, place: Place) -> str:
         number = self.cell_at(place)
-        return self.hint if number is None else self.hint_of(number)
+        return super().hint_at(place) if number is None else self.hint_of(number)
 
     @property
     def _left(self) -> int:

@@ -17,7 +17,6 @@ from autocolor.widgets.items import (
     Area,
     Item,
     area_of,
-    between,
     clipped,
     filled,
     image,
@@ -145,7 +144,7 @@ places = st.tuples(st.floats(-100, 100), st.floats(-100, 100))
 def test_what_is_left_of_a_stroke_is_all_of_it_that_is_in_the_area(
     start: tuple[float, float], end: tuple[float, float]
 ) -> None:
-    found = clipped(between(np.array([start]), np.array([end])), AREA)
+    found = clipped(np.array([[*start, *end]]), AREA)
     along = np.linspace(0, 1, 201)[:, None]
     points = np.array(start) + along * (np.array(end) - np.array(start))
     inside = [point for point in points.tolist() if AREA.has(*point)]

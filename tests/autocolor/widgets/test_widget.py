@@ -99,8 +99,8 @@ def test_a_drag_along_a_choice_runs_through_all_names() -> None:
 def test_a_choice_of_many_names_has_a_list_and_says_so(names: str, turns_pages: bool, has_list: bool) -> None:
     choice = Choice("curve", "The curve.", names=names, turns_pages=turns_pages, area=ROW)
     assert choice.has_list == has_list
-    assert choice.hint == ("The curve; a click lists all 4." if has_list else "The curve.")
-    assert replace(choice, why_not="not now").hint == "not now"
+    assert choice.hint_at(LEFT) == ("The curve; a click lists all 4." if has_list else "The curve.")
+    assert replace(choice, why_not="not now").hint_at(LEFT) == "not now"
     assert (choice.items(lit=False) != replace(choice, names="ab").items(lit=False)) == has_list
 
 
