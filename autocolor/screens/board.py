@@ -106,7 +106,10 @@ class Board:
         if self._layout is None or self._layout[0] != state:
             letters = letter_panel(self.typing.key) if by_letters else ()
             over = (*letters, *(() if self.hides_panels else self.over()))
-            content = self.screen.build(self._surroundings(has_menu, over))
+            above = [*((MENU, STRIP) if has_menu else ()), *(each.area for each in (*over, *self._message))]
+            pointer = Place(-1, -1) if any(area.has(*self.pointer) for area in above) else self.pointer
+            lit = "" if self._lit is None else self._lit.key
+            content = self.screen.build(Surroundings(has_menu, not self.hides_panels, lit, pointer))
             last = [*last_rows(session, self.screen), *self._hiding_rows(content)]
             rows = self.menu.rows(session.screen, content.rows(), last) if has_menu else ()
             offer = offer_button(session.news.offer) if session.has_news and not self.typing.is_on else None
@@ -119,15 +122,6 @@ class Board:
     def content(self) -> Content:
         """The content of the screen that is shown."""
         return self.layout.content
-
-    def _surroundings(self, has_menu: bool, over: Sequence[Widget]) -> Surroundings:
-        """The menu, the panels and the pointer, for the screen that is shown."""
-        message = (item.area for item in self._message)
-        above = (*((MENU, STRIP) if has_menu else ()), *(widget.area for widget in over), *message)
-        is_covered = any(area.has(*self.pointer) for area in above)
-        pointer = Place(-1, -1) if is_covered else self.pointer
-        lit = "" if self._lit is None else self._lit.key
-        return Surroundings(has_menu, not self.hides_panels, lit, pointer)
 
     def forget(self) -> None:
         """Make the layout anew when it is needed, because the scene or the screen may have changed."""
@@ -219,12 +213,6 @@ class Board:
         getattr(self, f"_{gesture.kind}")(gesture)
         if hint and hint != self._hint():
             self.session.news = self.session.news._replace(seconds=LEAST_SECONDS)
-
-    def clear(self) -> None:
-        """Take the menu, the pointer and its hint away."""
-        self.pointer = Place(-1, -1)
-        self._lit = None
-        self.close()
 
     def release(self) -> None:
         """Let go of a grabbed or picked thing, and end typing."""
@@ -486,11 +474,7 @@ class Board:
         if self.layout.rows:
             return True
         element, line = self.pointer
-        if (
-            self._grabbed is not None
-            or line >= MESSAGE.top
-            or self.layout.widget_at(element, line) is not None
-        ):
+        if self.is_dragging or line >= MESSAGE.top or self.layout.widget_at(element, line) is not None:
             return False
         handle = self.held or self.handle_at(element, line)
         if handle is not None:

@@ -191,7 +191,7 @@ class Session:
     def __post_init__(self) -> None:
         self.root = self.folder = self.root.resolve()
         self.comparing = Comparing(self.studio)
-        self._names = TableNames(self._names_in, {})
+        self._names = TableNames(lambda table: tuple([row.name for row in vars(self.scene)[table]]), {})
         self._world: Cached[World] = Cached()
 
     @property
@@ -210,9 +210,6 @@ class Session:
             return World(*scene.object_bounds, self._names, (low, high))
 
         return self._world.of(world, mesh, scene.parts)
-
-    def _names_in(self, table: str) -> tuple[str, ...]:
-        return tuple([row.name for row in vars(self.scene)[table]])
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""

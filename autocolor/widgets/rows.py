@@ -247,8 +247,7 @@ def _vector_rows(menu: _Menu, label: str, column: Column, vector: Vector, put: P
         return put((*vector[:number], value, *vector[number + 1 :]))
 
     for number, axis in enumerate(AXES):
-        is_place = column.unit == WORLD_UNITS
-        usual = menu.world.range_of(axis) if is_place else BarRange(-1, 1, 0.01)
+        usual = menu.world.range_of(axis) if column.unit == WORLD_UNITS else BarRange(-1, 1, 0.01)
         yield Bar(
             f"{label} {axis}",
             _help(column),
@@ -272,21 +271,12 @@ def _curve_rows(
     for number, (angle, share) in enumerate(shares.items()):
         usual = bar_within(0 if number else kind.least, 1)
         yield Bar(
-            f"at {angle:g} degrees",
-            help,
-            value=share,
-            **usual._asdict(),
-            put=partial(put_share, angle),
+            f"at {angle:g} degrees", help, value=share, **usual._asdict(), put=partial(put_share, angle)
         )
 
 
 def _list_rows(
-    label: str,
-    column: Column,
-    table: str,
-    value: Sequence[str] | None,
-    put: PutValue,
-    tables: TableNames,
+    label: str, column: Column, table: str, value: Sequence[str] | None, put: PutValue, tables: TableNames
 ) -> Iterator[Widget]:
     """A switch that gives an empty list; below it a switch for each name of a page."""
     begun = () if value is None else None
