@@ -411,8 +411,8 @@ STEM_LETTERS: Final = 3
 def short_label(label: str, most: int) -> str:
     """A label of at most `most` characters. If it is longer, its longest word is shortened to a consonant.
 
-    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
-    ('normal refl.', 'x min.', 'cone angle')
+    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("concentration", 9)
+    ('normal refl.', 'x min.', 'concentr.')
     """
     excess = len(label) - most
     if excess <= 0:

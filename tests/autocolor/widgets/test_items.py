@@ -76,14 +76,6 @@ def test_a_character_has_7_elements_and_9_lines() -> None:
     assert (nothing.area, nothing.is_solid) == ((10, 5, 16, 13), False)
 
 
-def test_lines_that_leave_an_area_are_drawn_inside_it_and_come_back() -> None:
-    area = Area(10, 10, 20, 20)
-    display = painted(lines([[(5, 15), (25, 15), (25, 12), (12, 12)]], WHITE, area))
-    assert (display.words[15, 10:21] == WHITE).all()
-    assert (display.words[12, 12:21] == WHITE).all()
-    assert np.count_nonzero(display.words == WHITE) == 11 + 9
-
-
 def test_a_line_of_any_length_keeps_its_slope() -> None:
     display = painted(lines([[(-1e6, -1e6), (1e6, 1e6)]], WHITE, Area(0, 0, 39, 39)))
     assert (np.diagonal(display.words[:40, :40]) == WHITE).all()

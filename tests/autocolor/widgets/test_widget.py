@@ -20,7 +20,6 @@ from autocolor.widgets.widget import (
     Steps,
     Switch,
     Widget,
-    page_choice,
     short_label,
 )
 
@@ -104,16 +103,6 @@ def test_a_choice_of_many_names_has_a_list_and_says_so(names: str, turns_pages: 
     assert (choice.items(lit=False) != replace(choice, names="ab").items(lit=False)) == has_list
 
 
-def test_pages_are_turned_in_both_directions() -> None:
-    turned = Done()
-    row = page_choice("", 0, 3, turned).at(ROW)
-    assert row.present == "1 of 3"
-    row.pick(RIGHT)
-    row.pick(LEFT)
-    row.nudge(1)
-    assert turned.did == [1, 2, 1]
-
-
 @pytest.mark.parametrize(("element", "number"), [(510, 0), (559, 0), (571, 1), (630, 1)])
 def test_each_word_of_a_row_is_a_button(element: int, number: int) -> None:
     first, last = Done(), Done()
@@ -143,21 +132,6 @@ def test_a_name_in_a_menu_is_whole_and_so_is_its_label(kind: type[Widget], lengt
     assert (label.left, name.right) == (MENU.left + 1 + MARGIN, MENU.right - MARGIN)
     assert not name.overlaps(label)
     assert row.area.covers(name)
-
-
-@pytest.mark.parametrize(
-    ("label", "most", "short"),
-    [
-        ("cone angle", 10, "cone angle"),
-        ("x minimum", 7, "x min."),
-        ("normal reflectance", 12, "normal refl."),
-        ("concentration", 9, "concentr."),
-        ("aim", 1, "."),
-        ("aim", -1, ""),
-    ],
-)
-def test_the_longest_word_is_shortened(label: str, most: int, short: str) -> None:
-    assert short_label(label, most) == short
 
 
 @given(st.lists(st.text("abcdefgxyz", min_size=1), min_size=1).map(" ".join), st.integers(0, 40))
