@@ -5,17 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from autocolor.screens.input import (
-    LEFT,
-    MARK,
-    MIDDLE,
-    POINTER,
-    SLOP,
-    Gesture,
-    Mouse,
-    Unit,
-    turn_between,
-)
+from autocolor.screens.input import LEFT, MARK, MIDDLE, POINTER, SLOP, Gesture, Mouse, Unit, turn_between
 from ramtek_emu import Ramtek9300
 
 
