@@ -60,7 +60,7 @@ def test_the_pictures_of_a_gallery_come_in_turn_in_one_palette() -> None:
     colors = {number: np.full((4, 6, 3), 40 * number, np.uint8) for number in range(3)}
     wanted = {number: partial(Small, each) for number, each in colors.items()}
     wanted[3] = partial(Small, None, "no picture")
-    gallery = Gallery[int]()
+    gallery = Gallery()
 
     def tile(number: int) -> Tile:
         return gallery.framed(number, Tile("name").at(AREA))
