@@ -41,7 +41,6 @@ from autocolor.screens.gallery import (
     FRAME,
     LINES,
     NAME_LINES,
-    NO_PICTURE,
     TILE_ELEMENTS,
     TILE_LINES,
     Gallery,
@@ -262,8 +261,7 @@ class FileScreen(Screen):
         return file, times, self.session.mesh_up
 
     def _small_picture(self, file: File, times: int) -> Small:
-        if not may_reach(self.session, file.path):
-            return NO_PICTURE
+        check_reach(self.session, file.path, "a file to open")
         return small_picture_of_file(file.path, file.kind, self.session.mesh_up, times)
 
     def _idle(self, wanted: Sequence[tuple[File, int]], lit: str) -> bool:

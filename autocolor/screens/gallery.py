@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -84,11 +84,17 @@ class Gallery:
         self._words: dict[Hashable, Words] = {}
         """The words of the pictures that are shown."""
 
-    def advance(self, wanted: Mapping[Hashable, Callable[[], Small]]) -> bool:
-        """Make the next of the wanted pictures, and show those that are made; False if nothing is left."""
+    def advance(self, wanted: Mapping[Any, Callable[[], Small]]) -> bool:
+        """Make the next of the wanted pictures, and show those that are made; False if nothing is left.
+
+        A picture that raises an AutocolorError is left out.
+        """
         missing = next((key for key in wanted if key not in self._small), None)
         if missing is not None:
-            self._small[missing] = wanted[missing]()
+            try:
+                self._small[missing] = wanted[missing]()
+            except AutocolorError:
+                self._small[missing] = NO_PICTURE
         made = {key: self._small[key].colors for key in wanted if key in self._small}
         small = {key: colors for key, colors in made.items() if colors is not None}
         if small.keys() == self._words.keys():
@@ -127,22 +133,22 @@ def small_picture(scene: Scene, picture: Picture, times: int = 1) -> Bytes:
 
 
 def small_picture_of_file(path: Path, kind: str, up: str, times: int = 1) -> Small:
-    """The small picture of a file of a kind (see `Openable`); meshes are read with this axis up."""
-    try:
-        if kind == PICTURE.name:
-            scene, picture = read_picture(path, limit=PART_OF_BUDGET)
-            return Small(small_picture(scene, picture, times), "{}x{}".format(*picture.size))
-        if any(path.suffix.lower() in each.suffixes for each in FOREIGN):
-            # Another process reads it, which takes seconds.
-            return NO_PICTURE
-        scene = read_scene(path, up=up if kind == MESH else "z", limit=PART_OF_BUDGET)
-        count = len(scene.mesh.node_numbers)
-        if count > MOST_POLYGONS:
-            return Small(None, "too large")
-        picture = rendering(scene, 2 * times * LINES, 2 * times * ELEMENTS).picture
-        return Small(small_picture(scene, picture, times), f"{count:,} polygons")
-    except AutocolorError:
+    """The small picture of a file of a kind (see `Openable`); meshes are read with this axis up.
+
+    Raises AutocolorError.
+    """
+    if kind == PICTURE.name:
+        scene, picture = read_picture(path, limit=PART_OF_BUDGET)
+        return Small(small_picture(scene, picture, times), "{}x{}".format(*picture.size))
+    if any(path.suffix.lower() in each.suffixes for each in FOREIGN):
+        # Another process reads it, which takes seconds.
         return NO_PICTURE
+    scene = read_scene(path, up=up if kind == MESH else "z", limit=PART_OF_BUDGET)
+    count = len(scene.mesh.node_numbers)
+    if count > MOST_POLYGONS:
+        return Small(None, "too large")
+    picture = rendering(scene, 2 * times * LINES, 2 * times * ELEMENTS).picture
+    return Small(small_picture(scene, picture, times), f"{count:,} polygons")
 
 
 @dataclass(frozen=True)

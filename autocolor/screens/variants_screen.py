@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
-from autocolor.errors import InputError
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 from autocolor.screens.comparing import BEFORE, NamedScene
 from autocolor.screens.gallery import (
     ELEMENTS,
     LINES,
-    NO_PICTURE,
     TILE_ELEMENTS,
     TILE_LINES,
     Gallery,
@@ -89,12 +87,8 @@ class VariantsScreen(Screen):
         return self._gallery.framed(scene, tile.at(area))
 
     def _small_picture(self, scene: Scene) -> Small:
-        try:
-            self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
-            return Small(small_picture(scene, self._last.picture))
-        except InputError:
-            # At this size a surface that the whole picture hides may be visible, and too bright.
-            return NO_PICTURE
+        self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
+        return Small(small_picture(scene, self._last.picture))
 
     def enter(self) -> None:
         if self._present:

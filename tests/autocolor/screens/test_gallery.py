@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from autocolor import render, write_picture, write_scene
 from autocolor.files.opening import kind_of
 from autocolor.mapping.ranges import SCREENS
-from autocolor.screens.gallery import MOST_POLYGONS, Gallery, Small, Tile, small_picture_of_file
+from autocolor.screens.gallery import MOST_POLYGONS, Gallery, Tile, small_picture_of_file
 from autocolor.widgets.items import Area
-from ramtek_emu import Ramtek9300
-from tests.autocolor.widgets.drawing import draw_items
 from tests.small import wall, wall_scene
 
 SIDE = round(MOST_POLYGONS**0.5) + 1
 
-AREA = Area(100, 50, 217, 152)
+AREA = Area(100, 50, 349, 259)
 
 
 @pytest.mark.parametrize(
@@ -51,37 +47,11 @@ def test_a_file_has_a_small_picture_or_says_why_not(
             path.write_text("v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n")
         case _ if name != "gone.obj":
             path.write_text("damaged")
-    small = small_picture_of_file(path, kind_of(path), "z", times=2)
-    assert small.note == note
-    assert (None if small.colors is None else small.colors.shape[:2]) == size
-
-
-def test_the_pictures_of_a_gallery_come_in_turn_in_one_palette() -> None:
-    colors = {number: np.full((4, 6, 3), 40 * number, np.uint8) for number in range(3)}
-    wanted = {number: partial(Small, each) for number, each in colors.items()}
-    wanted[3] = partial(Small, None, "no picture")
     gallery = Gallery()
-
-    def tile(number: int) -> Tile:
-        return gallery.framed(number, Tile("name").at(AREA))
-
-    for count in range(4):
-        assert sum(tile(number).picture is not None for number in wanted) == count
-        assert gallery.advance(wanted)
-    assert not gallery.advance(wanted)
-    assert tile(3).note == "no picture"
-    ((first, palette),) = gallery.loads
-    assert 0 < first < first + len(palette) <= SCREENS.first
-    for number, each in colors.items():
-        picture, display = tile(number).picture, Ramtek9300()
-        assert picture is not None
-        draw_items(display, [picture])
-        left, top, right, bottom = picture.area
-        words = display.words[top : bottom + 1, left : right + 1]
-        assert np.array_equal(palette[words - first], each)
-        assert tile(number).frame.covers(picture.area)
-    gallery.keep([0])
-    assert [tile(number).picture is not None for number in wanted] == [True, False, False, False]
-    # A picture that is wanted no more is shown no more.
-    assert gallery.advance({1: partial(Small, colors[1])})
-    assert [tile(number).picture is not None for number in wanted] == [False, True, False, False]
+    wanted = {name: lambda: small_picture_of_file(path, kind_of(path), "z", times=2)}
+    assert [gallery.advance(wanted), gallery.advance(wanted)] == [True, False]
+    tile = gallery.framed(name, Tile("name").at(AREA))
+    assert tile.note == note
+    assert (None if tile.picture is None else (tile.picture.area.height, tile.picture.area.width)) == size
+    assert tile.picture is None or tile.frame.covers(tile.picture.area)
+    assert all(0 < first < first + len(palette) <= SCREENS.first for first, palette in gallery.loads)

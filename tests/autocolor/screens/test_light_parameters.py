@@ -6,11 +6,9 @@ from pathlib import Path
 import pytest
 
 from autocolor import Light, Scene, scene_of
-from autocolor.scene.columns import fields_of
 from autocolor.screens.light_parameters import (
     AIM,
     DIRECTION,
-    NEEDS_AXIS,
     POINT,
     aim_of,
     choose_kind,
@@ -26,6 +24,7 @@ from tests.closeness import all_close
 from tests.small import cube
 
 AIMED = Light("key", (2.0, -3.0, 4.0), aim=(0.5, 0.5, 1.0), concentration=2.0, cone_angle=30.0)
+SOFT = AIMED.replace(inner_angle=10, at_infinity=True)
 
 
 def session_of(light: Light) -> Session:
@@ -43,30 +42,18 @@ def row_of(session: Session, label: str, name: str = "key") -> Choice:
 
 def test_every_kind_can_be_chosen_from_every_other() -> None:
     for kind in (POINT, AIM, DIRECTION):
-        for light in (AIMED, AIMED.replace(direction=(1, 0, -1)), Light("key", (2.0, -3.0, 4.0))):
+        for light in (SOFT, SOFT.replace(direction=(1, 0, -1)), Light("key", AIMED.position)):
             session = session_of(light)
             choose_kind(session, light, kind)
             now = session.scene.lights["key"]
             assert kind_of(now) == kind
             assert [now.aim is not None, now.direction is not None] == [kind == AIM, kind == DIRECTION]
-            assert now.position == light.position
+            assert now == Light("key", AIMED.position) if kind == POINT else now.position == light.position
             if light.axis is None and kind == AIM:
                 assert now.aim == (0.5, 0.5, 0.5)
             elif light.axis is not None and kind != POINT:
                 assert now.axis == pytest.approx(light.axis)
                 assert (now.concentration, now.cone_angle) == (2.0, 30.0)
-
-
-def test_a_point_source_has_no_concentration_and_no_cone() -> None:
-    soft = AIMED.replace(inner_angle=10, at_infinity=True)
-    session = session_of(soft)
-    choose_kind(session, soft, POINT)
-    light = session.scene.lights["key"]
-    assert light == Light("key", AIMED.position)
-    columns = tuple(fields_of(Light))
-    dim = {row.label for row in parameter_rows(session, light, columns) if row.why_not == NEEDS_AXIS}
-    assert dim == {"concentration", "cone angle", "at infinity"}
-    assert not any(row.why_not for row in parameter_rows(session, AIMED, columns))
 
 
 def test_a_directed_light_is_aimed_ahead_and_others_at_the_object() -> None:

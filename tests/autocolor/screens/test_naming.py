@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.screens.gallery import Tile
 from tests.autocolor.screens.boxes import hand_at, told
 from tests.autocolor.screens.hand import Hand
 
@@ -22,21 +21,18 @@ def test_a_new_light_is_named_by_return_and_is_one_step(hand: Hand) -> None:
     before = hand.scene
     hand.pick("add", 0.75)
     assert hand.hint == "name of the light: key 2"
+    # A name that is taken stays to be typed over.
+    hand.type("key")
+    hand.press("return")
+    assert (told(hand)[1], hand.hint) == (True, "name of the light: key")
     hand.type("moon")
     hand.press("return")
     assert [light.name for light in hand.scene.lights] == ["key", "fill", "moon"]
     assert hand.viewer.session.light_name == "moon"
     assert hand.viewer.studio.history.to_undo == (before,)
-
-
-def test_a_name_that_is_taken_is_refused_and_stays_to_be_typed_over(hand: Hand) -> None:
     hand.pick("add", 0.75)
-    hand.type("key")
-    hand.press("return")
-    assert told(hand)[1]
-    assert hand.hint == "name of the light: key"
     hand.press("escape")
-    assert [light.name for light in hand.scene.lights] == ["key", "fill", "key 2"]
+    assert [light.name for light in hand.scene.lights][3:] == ["moon 2"]
 
 
 def test_a_second_click_on_the_name_of_a_light_renames_it(hand: Hand) -> None:
@@ -46,6 +42,7 @@ def test_a_second_click_on_the_name_of_a_light_renames_it(hand: Hand) -> None:
     hand.type("sky")
     hand.press("return")
     assert [light.name for light in hand.scene.lights] == ["key", "sky"]
+    assert hand.viewer.session.light_name == "sky"
     assert len(hand.viewer.studio.history.to_undo) == 1
 
 
@@ -66,19 +63,11 @@ def test_a_camera_is_named_and_renamed_from_its_list(hand: Hand) -> None:
     assert hand.message == "camera side"
 
 
-def test_a_variant_is_named_when_it_is_kept(hand: Hand) -> None:
+def test_a_variant_is_named_when_it_is_kept_and_renamed_by_a_second_click(hand: Hand) -> None:
     hand.go_to("variants")
-    hand.pick("keep")
-    hand.type("dusk")
-    hand.press("return")
-    assert list(hand.viewer.studio.variants) == ["dusk"]
-    assert [each.label for each in hand.viewer.board.widgets() if isinstance(each, Tile)] == ["dusk"]
-
-
-def test_a_second_click_renames_an_older_variant(hand: Hand) -> None:
-    hand.go_to("variants")
-    for _ in range(2):
+    for name in ("", "dusk"):
         hand.pick("keep")
+        hand.type(name)
         hand.press("return")
         hand.viewer.studio.recolor("low", blend=0.25)
     scene = hand.viewer.studio.variants["A"].scene
@@ -88,7 +77,7 @@ def test_a_second_click_renames_an_older_variant(hand: Hand) -> None:
     hand.type("dawn")
     hand.press("return")
     variants = hand.viewer.studio.variants
-    assert list(variants) == ["dawn", "B"]
+    assert list(variants) == ["dawn", "dusk"]
     assert variants["dawn"].scene is scene
     assert hand.hint.startswith("variant dawn")
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Mesh, Scene, Surface, View, render, scene_of
+from autocolor import Scene, render
 from autocolor.arrays import Words
 from autocolor.images import display_image
 from autocolor.mapping.palette import thumbnail
@@ -30,7 +30,7 @@ from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
 from tests.autocolor.screens.boxes import hand_at, told, undo
 from tests.autocolor.screens.hand import Hand
-from tests.small import boxes, grid
+from tests.small import boxes
 from tests.tables import first
 
 SCENE = boxes()
@@ -375,30 +375,3 @@ def test_many_variants_have_pages(hand: Hand) -> None:
         hand.pick("drop")
     assert len(names(hand)) == ON_PAGE
     assert "page" not in [row.label for row in hand.viewer.board.content.rows()]
-
-
-def test_a_small_picture_that_is_refused_is_left_out(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "variants")
-    # A strip between the middles of two pixels of the picture, where the small one has the middle of a pixel.
-    pixel = 2.0 / 480
-    left = (10.0 - 320) * pixel
-    meshes = [
-        grid(1, 1, (-2.0, 0, -2.0), (4.0, 0, 0), (0, 0, 4.0), "wall"),
-        grid(1, 1, (left - pixel / 4, -1e-4, -2.0), (pixel / 2, 0, 0), (0, 0, 4.0), "strip"),
-    ]
-    scene = scene_of(
-        Mesh.joined(meshes),
-        surface_of_part={"wall": "wall", "strip": "strip"},
-        surfaces=[Surface("wall"), Surface("strip")],
-        lights=[Light("key", (0, -5, 0), 3e38)],
-        view=View((0, -1, 0), target=(0, 0, 0), field_of_view=90.0),
-    )
-    scene = scene.with_surface("wall", diffuse=0.1, specular=0.1).with_surface("strip", diffuse=1, specular=1)
-    render(scene)
-    with pytest.raises(InputError, match="intensities must stay below"):
-        render(scene, (2 * ELEMENTS, 2 * LINES))
-    hand.viewer.studio.edit(scene)
-    hand.pick("keep")
-    rest(hand)
-    assert pictures(hand) == 0
-    assert told(hand) == ("kept as A", False)
