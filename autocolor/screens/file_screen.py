@@ -52,17 +52,7 @@ from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, NIGHT, SLATE, YELLOW, Area, Item, fitted, text
 from autocolor.widgets.menu import WORK, laid_out, paged
-from autocolor.widgets.widget import (
-    MARGIN,
-    ROW_LINES,
-    TEXT_DOWN,
-    Button,
-    Choice,
-    Entry,
-    Gap,
-    Pair,
-    Widget,
-)
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Entry, Gap, Pair, Widget
 
 LEFT: Final = Area(7, WORK.top + 40, 247, WORK.bottom - 8)
 """The column of the folder's files."""
@@ -242,12 +232,9 @@ class FileScreen(Screen):
 
     def _row(self, file: File, shown: str) -> Widget:
         path, kind, changed = file
-        if kind == FOLDER:
-            help, run = f"Look into {self.session.shown(path)}", partial(self._go_to, path)
-        else:
-            help, run = f"Open {self.session.shown(path)}", partial(self._open, path)
-        date = short_date(changed) if changed else ""
-        return FileRow(str(path), help, run=run, value=kind, shown=shown, date=date)
+        verb, run = ("Look into", self._go_to) if kind == FOLDER else ("Open", self._open)
+        help, date = f"{verb} {self.session.shown(path)}", short_date(changed) if changed else ""
+        return FileRow(str(path), help, run=partial(run, path), value=kind, shown=shown, date=date)
 
     def _tile(self, file: File, area: Area, within: str, times: int = 1) -> Tile:
         path, as_example = file.path, within == EXAMPLE
