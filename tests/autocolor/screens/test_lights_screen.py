@@ -12,11 +12,13 @@ from autocolor.scene.arrangements import ARRANGEMENTS, arranged
 from autocolor.scene.changes import LightChanges
 from autocolor.scene.columns import keys_of
 from autocolor.scene.following import detached
+from autocolor.screens.light_parameters import AIM, DIRECTION, POINT
 from autocolor.screens.lights_screen import LIGHTS_A_PAGE, places_of
 from autocolor.widgets.items import SCREEN, YELLOW
 from autocolor.widgets.menu import WORK
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
+from tests.closeness import all_close
 from tests.small import KEY, boxes
 
 BOX = 0.95
@@ -112,6 +114,105 @@ def test_a_point_source_has_neither_cone_nor_concentration_and_says_why(hand: Ha
     assert hand.scene is before
     hand.pick("kind")
     assert light_of(hand).aim == (0.5, 0.5, 0.5)
+
+
+# The kind of a light, what it follows, and what changes with its other parameters.
+
+MIDDLE = (0.5, 0.5, 0.5)
+SOFT = Light(
+    "key", (2, -3, 4), aim=(0.5, 0.5, 1), concentration=2, cone_angle=30, inner_angle=25, at_infinity=True
+)
+
+
+def row(hand: Hand, label: str) -> Any:
+    """A row of the menu, as it is now."""
+    hand.viewer.tell("")
+    return hand.widget(label)
+
+
+def put_light(hand: Hand, light: Light) -> None:
+    """Make a light the only one, as an edit."""
+    hand.viewer.session.edit(boxes().replace(lights=[light]))
+
+
+@pytest.mark.parametrize("light", [SOFT, SOFT.replace(direction=(1, 0, -1)), Light("key", SOFT.position)])
+def test_every_kind_can_be_chosen_from_every_other(hand: Hand, light: Light) -> None:
+    for kind in (POINT, AIM, DIRECTION):
+        put_light(hand, light)
+        row(hand, "kind").choose(kind)
+        now = light_of(hand)
+        assert row(hand, "kind").present == kind
+        assert [now.aim is not None, now.direction is not None] == [kind == AIM, kind == DIRECTION]
+        assert now == Light("key", SOFT.position) if kind == POINT else now.position == SOFT.position
+        if light.axis is None and kind == AIM:
+            assert now.aim == MIDDLE
+        elif light.axis is not None and kind != POINT:
+            assert now.axis == pytest.approx(light.axis)
+            assert (now.concentration, now.cone_angle) == (2, 30)
+
+
+@pytest.mark.parametrize(
+    ("light", "aim"),
+    [
+        (Light("key", (0.5, 0.5, 4), direction=(0, 0, -2)), MIDDLE),
+        (Light("key", (0.5, 0.5, 4), direction=(1, 0, 0)), (4, 0.5, 4)),
+        # From the middle of the object a light is aimed down.
+        (Light("key", MIDDLE), (0.5, 0.5, -0.5)),
+    ],
+)
+def test_a_directed_light_is_aimed_ahead(hand: Hand, light: Light, aim: tuple[float, ...]) -> None:
+    put_light(hand, light)
+    row(hand, "kind").choose(AIM)
+    assert light_of(hand).aim == pytest.approx(aim)
+
+
+def test_a_light_can_follow_the_eye_and_each_light_with_an_aim_and_stays_where_it_is(hand: Hand) -> None:
+    session = hand.viewer.session
+    key, fill = SOFT.replace(at_infinity=False), Light("fill", (1, -2, 2), direction=(0, 1, -1))
+    session.edit(boxes().replace(lights=[key, fill]).with_view(eye=(3, -5, 2), angle=20))
+    assert row(hand, "follows").names == ("world", "eye")
+    session.choose_light("fill")
+    assert (row(hand, "follows").names, row(hand, "follows").present) == (("world", "eye", "key"), "world")
+    before, picture = session.scene.lights_in_world["fill"], session.studio.picture.intensity
+    for follows in ("eye", "key", "eye", "world"):
+        row(hand, "follows").choose(follows)
+        light = session.scene.lights_in_world["fill"]
+        assert light_of(hand, "fill").follows == (None if follows == "world" else follows)
+        assert light.position == pytest.approx(before.position)
+        assert light.direction == pytest.approx(before.direction)
+        assert row(hand, "follows").present == follows
+        assert all_close(session.studio.picture.intensity, picture, abs=1e-5)
+    # No light is offered that follows this one.
+    row(hand, "follows").choose("key")
+    row(hand, "kind").choose(AIM)
+    session.choose_light("key")
+    assert row(hand, "follows").names == ("world", "eye")
+    # A light that follows gets an aim where it shines, and a direction from there.
+    session.choose_light("fill")
+    row(hand, "follows").choose("eye")
+    for kind in (AIM, DIRECTION):
+        row(hand, "kind").choose(kind)
+        assert row(hand, "kind").present == kind
+        assert session.scene.lights_in_world["fill"].axis == pytest.approx(before.axis)
+    row(hand, "kind").choose(POINT)
+    row(hand, "kind").choose(AIM)
+    assert session.scene.lights_in_world["fill"].aim == pytest.approx(MIDDLE)
+
+
+def test_choosing_a_falloff_gives_a_light_a_reach_and_keeps_one_that_it_has(hand: Hand) -> None:
+    row(hand, "falloff").choose("quadratic")
+    assert light_of(hand).reach == pytest.approx(hand.viewer.session.world.size)
+    row(hand, "reach").put(7)
+    row(hand, "falloff").choose("linear")
+    assert (light_of(hand).reach, light_of(hand).falloff) == (7, "linear")
+
+
+@pytest.mark.parametrize(("cone", "inner"), [(40, 25), (25, 25), (20, 20), (None, None)])
+def test_the_inner_angle_stays_within_the_cone(hand: Hand, cone: float | None, inner: float | None) -> None:
+    put_light(hand, SOFT)
+    bar = row(hand, "cone angle")
+    bar.put(cone) if cone else bar.flip()
+    assert (light_of(hand).cone_angle, light_of(hand).inner_angle) == (cone, inner)
 
 
 def chosen(hand: Hand) -> Any:
@@ -298,12 +399,10 @@ def test_picking_is_ended_by_escape_its_row_and_another_screen(hand: Hand, by: s
         assert (hand.display.words[line - 5 : line + 6, element - 5 : element + 6] == YELLOW).any()
     middle = np.mean(PLACES[:2], axis=0).astype(int)
     assert (hand.display.words[middle[1] - 1 : middle[1] + 2, middle[0]] == YELLOW).any()
-    row: Any = hand.widget("half spaces")
-    assert (row.value, row.is_chosen) == ("2/3", True)
+    assert (row(hand, "half spaces").value, row(hand, "half spaces").is_chosen) == ("2/3", True)
     ENDINGS[by](hand)
     assert hand.viewer.page == "lights"
-    row = hand.widget("half spaces")
-    assert (row.value, row.is_chosen) == ("add", False)
+    assert (row(hand, "half spaces").value, row(hand, "half spaces").is_chosen) == ("add", False)
     hand.click(*PLACES[2])
     assert light_of(hand).half_spaces == ()
     assert len(hand.viewer.board.content.handles) == handles
