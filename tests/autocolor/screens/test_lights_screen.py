@@ -336,15 +336,12 @@ def test_three_points_of_the_object_make_a_half_space_in_one_step(hand: Hand) ->
     before = hand.scene
     seen = [hand.viewer.studio.seen_at(line, element) for element, line in PLACES]
     hand.pick("half spaces")
-    assert told(hand) == (PROMPT.format("first"), False)
-    hand.click(5, 400)
-    assert told(hand) == (f"no point is seen there; {PROMPT.format('first')}", True)
-    hand.click(*PLACES[0])
-    assert told(hand) == (PROMPT.format("second"), False)
-    hand.click(*PLACES[1])
-    assert told(hand) == (PROMPT.format("third"), False)
-    assert hand.scene is before
-    hand.click(*PLACES[2])
+    for place, number in zip(PLACES, ("first", "second", "third"), strict=True):
+        assert told(hand) == (PROMPT.format(number), False)
+        hand.click(5, 400)
+        assert told(hand) == (f"no point is seen there; {PROMPT.format(number)}", True)
+        assert hand.scene is before
+        hand.click(*place)
     assert told(hand) == ("half-space added to key: plane", False)
     (plane,) = light_of(hand).half_spaces
     for each in seen:
