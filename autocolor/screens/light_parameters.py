@@ -82,8 +82,7 @@ def _follows_row(session: Session, light: Light) -> Choice:
 
     def choose(follows: str) -> None:
         # The light stays where it is now.
-        followed = None if follows == WORLD else follows
-        session.edit(session.scene.with_light_following(light.name, followed))
+        session.edit(session.scene.with_light_following(light.name, None if follows == WORLD else follows))
 
     return Choice(
         "follows",

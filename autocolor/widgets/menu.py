@@ -87,16 +87,13 @@ def page_of_menu(
 
     Each page ends with the `last` rows. If there are several pages, the row before them turns to another.
     """
-    room = MENU.height - lines_of(last)
-    pages, used = [list(rows)], 0
+    room, pages = MENU.height - lines_of(last), list[list[Widget]]([[]])
     if lines_of(rows) > room:
-        pages = [[]]
-        for row in rows:
-            if used + row.row_lines > room - ROW_LINES:
-                pages.append([])
-                used = 0
-            pages[-1].append(row)
-            used += row.row_lines
+        room -= ROW_LINES
+    for row in rows:
+        if lines_of([*pages[-1], row]) > room:
+            pages.append([])
+        pages[-1].append(row)
     number = min(number, len(pages) - 1)
     if len(pages) > 1:
         pages[number].append(page_choice("The other rows of this menu.", number, len(pages), turn, MORE))

@@ -99,23 +99,6 @@ def test_every_parameter_of_a_light_has_a_row_and_absent_controls_have_one_each(
     assert "inner angle" not in labels_of(hand)
 
 
-def test_a_point_source_has_neither_cone_nor_concentration_and_says_why(hand: Hand) -> None:
-    hand.pick("kind")
-    assert light_of(hand).direction == pytest.approx(KEY.axis)
-    hand.pick("kind")
-    light = light_of(hand)
-    assert (light.aim, light.direction, light.cone_angle, light.concentration) == (None, None, None, 0)
-    dim = [row.label for row in hand.viewer.board.content.rows() if row.why_not]
-    assert dim == ["concentration", "cone angle", "at infinity"]
-    before = hand.scene
-    hand.pick("cone angle", BOX)
-    assert told(hand) == ("cone angle: a point source has no axis; choose the kind aim first", True)
-    hand.pull("concentration", 0.2, 0.8)
-    assert hand.scene is before
-    hand.pick("kind")
-    assert light_of(hand).aim == (0.5, 0.5, 0.5)
-
-
 # The kind of a light, what it follows, and what changes with its other parameters.
 
 MIDDLE = (0.5, 0.5, 0.5)
@@ -149,6 +132,17 @@ def test_every_kind_can_be_chosen_from_every_other(hand: Hand, light: Light) -> 
         elif light.axis is not None and kind != POINT:
             assert now.axis == pytest.approx(light.axis)
             assert (now.concentration, now.cone_angle) == (2, 30)
+
+
+def test_a_point_source_says_why_it_has_neither_cone_nor_concentration(hand: Hand) -> None:
+    row(hand, "kind").choose(POINT)
+    dim = [row.label for row in hand.viewer.board.content.rows() if row.why_not]
+    assert dim == ["concentration", "cone angle", "at infinity"]
+    before = hand.scene
+    hand.pick("cone angle", BOX)
+    assert told(hand) == ("cone angle: a point source has no axis; choose the kind aim first", True)
+    hand.pull("concentration", 0.2, 0.8)
+    assert hand.scene is before
 
 
 @pytest.mark.parametrize(

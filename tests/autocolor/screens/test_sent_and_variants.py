@@ -145,12 +145,7 @@ def test_a_color_that_is_undone_from_another_screen_needs_no_word_of_the_picture
     last = last_edit(viewer)
     assert names_in(last.words) == ["LAM"]
     assert last.other_words > viewer.studio.words.size // 2
-
-
-def test_turning_to_another_screen_is_no_edit(recorded: Recorded) -> None:
-    viewer = recorded.viewer
-    recorded.edit(EDITS["view"](SCENE))
-    last = last_edit(viewer)
+    # Turning to another screen is no edit.
     for name in viewer.screens:
         viewer.session.turn_to(name)
         viewer.tell("")
