@@ -20,22 +20,23 @@ from typing import ClassVar, Final, NamedTuple
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.meshes.repair import UPS
 from autocolor.files.opening import FOLDER, RIG, kind_of, openables_of
-from autocolor.files.paths import SCENE_FILE, example_scenes, file_stem
+from autocolor.files.paths import SCENE_FILE, example_scenes, file_stem, free_path
 from autocolor.files.state import recent_files
 from autocolor.images import LARGEST, SMOOTHNESS, SMOOTHNESSES, size_of
+from autocolor.images import save_image as save_image_of
 from autocolor.journal.autosave import left_sessions, written_at
 from autocolor.journal.saving import free_name
 from autocolor.rendering import SIZE
 from autocolor.scene.scene import Scene
 from autocolor.screens.file_actions import (
     check_reach,
-    export,
     may_reach,
     open_file,
     recover,
     save,
     save_image,
     save_rig,
+    shown_folder,
 )
 from autocolor.screens.gallery import (
     FRAME,
@@ -402,7 +403,8 @@ class FileScreen(Screen):
             yield True
             yield True
             try:
-                path = export(session, scene, name, size, smooth)
+                path = free_path(shown_folder(session) / f"{name}.png")
+                save_image_of(path, scene, size=size, smooth=smooth)
             except AutocolorError as error:
                 session.warn(error)
                 break

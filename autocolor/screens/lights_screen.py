@@ -66,9 +66,6 @@ PLACE: Final = (KIND, "position", "direction", "aim", "follows")
 POINTS: Final = ("first", "second", "third")
 """The points of the object that are picked for the plane of a new half-space."""
 
-PLANE: Final = "plane"
-"""The name of a new half-space."""
-
 
 class LightsScreen(OverPicture):
     """The lights, in a list, and the chosen light in the menu."""
@@ -291,7 +288,7 @@ class LightsScreen(OverPicture):
             self._ask_for_point(points)
             return
         light = scene.lights_in_world[session.light_name]
-        name = free_name(PLANE, [each.name for each in light.half_spaces])
+        name = free_name("plane", [each.name for each in light.half_spaces])
         half_space = facing(HalfSpace.through(name, *points), light)
         session.edit(scene.with_light(light.name, half_spaces={name: half_space}))
         session.tell(f"half-space added to {light.name}: {name}")

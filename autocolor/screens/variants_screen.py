@@ -27,18 +27,17 @@ from autocolor.widgets.items import LIGHT_GRAY, Area, text
 from autocolor.widgets.menu import WORK, paged
 from autocolor.widgets.widget import ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Pair, Widget
 
-ACROSS: Final = 4
-DOWN: Final = 4
-ON_PAGE: Final = ACROSS * DOWN
 STEP_ACROSS: Final = 124
 STEP_DOWN: Final = 111
 
 PLACES: Final = tuple(
     Area(left, top, left + TILE_ELEMENTS - 1, top + TILE_LINES - 1)
-    for top in range(WORK.top + 4, WORK.top + 4 + DOWN * STEP_DOWN, STEP_DOWN)
-    for left in range(8, 8 + ACROSS * STEP_ACROSS, STEP_ACROSS)
+    for top in range(WORK.top + 4, WORK.bottom - TILE_LINES, STEP_DOWN)
+    for left in range(8, WORK.right - TILE_ELEMENTS, STEP_ACROSS)
 )
-"""The places of the tiles."""
+"""The places of the tiles of a page, as many as there is room for."""
+
+ON_PAGE: Final = len(PLACES)
 
 EMPTY: Final = ("no variant is kept yet", "keep the scene as it is now, and come back to it later")
 """The lines of the screen before a variant is kept."""

@@ -45,11 +45,9 @@ def cut_hand(tmp_path: Path) -> Hand:
 
 CLICKS: dict[str, tuple[list[tuple[str, float]], LightChanges]] = {
     "off": ([("on", BOX)], {"on": False}),
-    "no cone": ([("cone angle", BOX)], {"cone_angle": None}),
     "a new cone": ([("cone angle", BOX), ("cone angle", BOX)], {"cone_angle": 30.0}),
     "a flap off": ([("flaps x", BOX)], {"flaps": {"x": {"on": False}}}),
     "a new flap": ([("flaps", 0.9)], {"flaps": {"y": Flap()}}),
-    "a surface": ([("only surfaces", BOX), ("  high", BOX)], {"links": {"only_surfaces": ["high"]}}),
     "one list after the other": (
         [("only surfaces", BOX), ("except surfaces", BOX)],
         {"links": {"except_surfaces": []}},
@@ -228,6 +226,8 @@ def test_a_light_is_added_and_chosen(hand: Hand, label: str, share: float, name:
     assert [light.name for light in hand.scene.lights] == ["key", "fill", name]
     assert told(hand) == (message, False)
     assert chosen(hand) == name
+    # Without a keyboard, nobody is asked for a name.
+    assert not hand.viewer.board.typing.is_on
     if label == "mirror":
         # On the other side of the object.
         assert light_of(hand, name).position == (-1, -3, 4)
@@ -236,6 +236,25 @@ def test_a_light_is_added_and_chosen(hand: Hand, label: str, share: float, name:
     undo(hand)
     undo(hand)
     assert hand.scene is before
+
+
+def test_a_new_light_is_named_by_return_and_is_one_step(hand: Hand) -> None:
+    hand.viewer.session.has_keyboard = True
+    before = hand.scene
+    hand.pick("add", 0.75)
+    assert hand.hint == "name of the light: key 2"
+    # A name that is taken stays to be typed over.
+    hand.type("key")
+    hand.press("return")
+    assert (told(hand)[1], hand.hint) == (True, "name of the light: key")
+    hand.type("moon")
+    hand.press("return")
+    assert [light.name for light in hand.scene.lights] == ["key", "fill", "moon"]
+    assert chosen(hand) == "moon"
+    assert hand.viewer.studio.history.to_undo == (before,)
+    hand.pick("add", 0.75)
+    hand.press("escape")
+    assert [light.name for light in hand.scene.lights][3:] == ["moon 2"]
 
 
 def test_lights_are_removed_to_the_last_and_added_again(hand: Hand) -> None:
@@ -457,6 +476,15 @@ def test_the_list_shows_and_sets_every_light(hand: Hand) -> None:
     hand.type("1.25")
     hand.press("return")
     assert light_of(hand, "fill").intensity == 1.25
+    # A click on the name of the chosen light renames it, as one step.
+    hand.viewer.session.has_keyboard = True
+    before = hand.scene
+    click_at(hand, "fill", 0, 0.3)
+    hand.type("sky")
+    hand.press("return")
+    assert [light.name for light in hand.scene.lights] == ["key", "sky"]
+    assert chosen(hand) == "sky"
+    assert hand.viewer.studio.history.to_undo[-1] is before
 
 
 def test_a_light_that_is_alone_gives_the_switches_of_all_lights_back(tmp_path: Path) -> None:

@@ -292,13 +292,28 @@ def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
     assert hand.viewer.studio.scene.surfaces["low"].paint.object_color == (0, 0, 128)
 
 
-def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -> None:
+def test_a_variant_is_named_when_it_is_kept_and_renamed_by_a_second_click(hand: Hand) -> None:
     hand.viewer.session.has_keyboard = True
-    for is_in_use in (False, True):
-        hand.pick("keep as")
-        hand.type("red")
+    for row, name in (("keep", ""), ("keep", "dusk"), ("keep as", "red")):
+        hand.pick(row)
+        hand.type(name)
         hand.press("return")
-        assert (list(hand.viewer.studio.variants), told(hand)[1]) == (["red"], is_in_use)
+        hand.viewer.studio.recolor("low", blend=0.25 + len(name) / 100)
+    assert names(hand) == ["A", "dusk", "red"]
+    hand.pick("keep as")
+    hand.type("dusk")
+    hand.press("return")
+    assert told(hand)[1]
+    hand.press("escape")
+    scene = hand.viewer.studio.variants["A"].scene
+    for _ in range(2):
+        hand.pick("A", 0.5)
+    assert hand.hint == "name of the variant: A"
+    hand.type("dawn")
+    hand.press("return")
+    assert names(hand) == ["dawn", "dusk", "red"]
+    assert hand.viewer.studio.variants["dawn"].scene is scene
+    assert hand.hint.startswith("variant dawn")
 
 
 @pytest.mark.parametrize("number", first(1, [4, 1, ON_PAGE]))
