@@ -71,7 +71,6 @@ class Small(NamedTuple):
 
 
 NO_PICTURE: Final = Small(None, "no picture")
-UNKNOWN: Final = Small(None)
 
 
 class Gallery:
@@ -83,6 +82,7 @@ class Gallery:
         self._small: dict[Hashable, Small] = {}
         self._words: dict[Hashable, Words] = {}
         """The words of the pictures that are shown."""
+        self._items: dict[tuple[Hashable, Area], Item] = {}
 
     def advance(self, wanted: Mapping[Any, Callable[[], Small]]) -> bool:
         """Make the next of the wanted pictures, and show those that are made; False if nothing is left.
@@ -99,7 +99,7 @@ class Gallery:
         small = {key: colors for key, colors in made.items() if colors is not None}
         if small.keys() == self._words.keys():
             return missing is not None
-        self._words, self.loads = {}, ()
+        self._words, self._items, self.loads = {}, {}, ()
         if small:
             pixels = np.concatenate([each.reshape(-1, 3) for each in small.values()])
             places, colors = in_palette(pixels[None], MOST_COLORS)
@@ -111,18 +111,20 @@ class Gallery:
 
     def keep(self, keys: Collection[Hashable] = ()) -> None:
         """Forget all other pictures; they are made again when they are wanted."""
+        self._items = {}
         for key in self._small.keys() - keys:
             del self._small[key]
             self._words.pop(key, None)
 
     def framed(self, key: Hashable, tile: Tile) -> Tile:
         """A tile with the picture of a key in the middle of its frame, and its note, if they are known."""
-        words, picture, frame = self._words.get(key), None, tile.frame
-        if words is not None:
+        words, frame = self._words.get(key), tile.frame
+        if words is not None and (key, frame) not in self._items:
             lines, elements = words.shape
             left, top = frame.left + (frame.width - elements) // 2, frame.top + (frame.height - lines) // 2
-            picture = image(words, left, top)
-        return replace(tile, picture=picture, note=self._small.get(key, UNKNOWN).note)
+            self._items[key, frame] = image(words, left, top)
+        note = self._small.get(key, Small(None)).note
+        return replace(tile, picture=self._items.get((key, frame)), note=note)
 
 
 def small_picture(scene: Scene, picture: Picture, times: int = 1) -> Bytes:

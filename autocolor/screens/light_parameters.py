@@ -67,7 +67,6 @@ def parameter_rows(session: Session, light: Light, columns: Sequence[str]) -> li
 
 
 def _kind_row(session: Session, light: Light) -> Choice:
-    """The choice of the kind of a light."""
     return Choice(
         "kind",
         "A point source shines to all sides; others along a direction, or at an aim.",

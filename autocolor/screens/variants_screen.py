@@ -144,7 +144,6 @@ class VariantsScreen(Screen):
         self._ask_name()
 
     def _ask_name(self) -> None:
-        """Ask for a name of the present variant."""
         ask_name(self.session, "variant", self._present, partial(self._rename, self._present))
 
     def _rename(self, name: str, new: str) -> None:
