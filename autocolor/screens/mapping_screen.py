@@ -16,18 +16,11 @@ import numpy as np
 from autocolor.arrays import Floats, Singles
 from autocolor.errors import UsageError
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.intensity import (
-    fractions_by_surface,
-    has_extent,
-    held_exposure,
-    held_name,
-    mapped_ranges,
-    ranges_of,
-    stage_surfaces,
-)
+from autocolor.mapping.intensity import fractions_by_surface, held_name, ranges_of
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.screens.cached import Cached
+from autocolor.screens.effects import ranges_to_hold
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
 from autocolor.screens.screen import Content, Handle, Sample, Surroundings
@@ -93,10 +86,10 @@ class MappingScreen(OverPicture):
         ]
         name, exposure = self.session.surface_name, self.session.scene.exposure
         title = f"{fitted(name, MOST_CHARACTERS)}: {range_state(exposure, name)}" if name else ""
-        items = [*content.items, *panel_items(title, *self._levels_and_shares(), self._points, self._touched)]
+        panel = panel_items(title, *self._levels_and_shares(), self._points, self._touched)
         return replace(
             content,
-            items=items,
+            items=[*content.items, *panel],
             handles=[*content.handles, *handles],
             hint=self._hint,
             sample=self._sample,
@@ -408,24 +401,21 @@ def flipped(session: Session, name: str) -> Exposure:
     are held, because those of the other surfaces could not follow the picture as before. Raises UsageError if
     the surface has no range to hold.
     """
-    studio, scene = session.studio, session.scene
-    held: dict[str, tuple[float, float]] = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
-    if held_name(scene.exposure, name):
+    studio, exposure = session.studio, session.scene.exposure
+    held = {} if isinstance(exposure, str) else dict(exposure)
+    if held_name(exposure, name):
         of_object = held.pop(OBJECT, None)
         others = [other for other in studio.level_ranges if other != OBJECT]
         held = {**(dict.fromkeys(others, of_object) if of_object else {}), **held}
         held.pop(name)
         return tuple(held.items()) or studio.history.following_exposure
-    picture = studio.display_image.mapped
-    stage, number = stage_surfaces(scene), picture.surfaces.index(name) + 1
-    extent = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage).get(number)
-    if extent is None or not has_extent(extent):
+    ranges = ranges_to_hold(studio.display_image)
+    limits = ranges.get(name, ranges.get(OBJECT))
+    if limits is None or name not in studio.display_image.mapped.ranges.surfaces:
         raise UsageError(f"{name} has no range to hold; light it, and turn it to the eye")
-    if isinstance(scene.exposure, str) and scene.exposure != AUTO:
-        ranges = held_exposure(picture, scene.scaling, scene.exposure, stage)
-        held = {} if isinstance(ranges, str) else dict(ranges)
-    held[name] = (extent.minimum * picture.scale, extent.maximum * picture.scale)
-    return tuple(held.items())
+    if isinstance(exposure, str) and exposure != AUTO:
+        held = ranges
+    return tuple({**held, name: limits}.items())
 
 
 def held_rows(session: Session) -> list[Widget]:
