@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import ClassVar, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -112,10 +112,11 @@ class PaintChoices:
             pages,
             self._turn,
         )
-        field = PaintField(
+        field = SwatchField(
             "paints",
             f"Paints for {chosen.name}: click one, or drag over them.",
             words=words[:count],
+            row_lines=COLUMNS * CELL_LINES,
             across=ROWS // page.size,
             width=page.size * CELL_ELEMENTS,
             height=page.size * CELL_LINES,
@@ -179,7 +180,7 @@ class SwatchField(Widget):
     """Called with 1 or -1, to take the next cell or the one before, by a key or the wheel."""
     hint_of: Callable[[int], str] = lambda _: ""
     """Gives the text of the message line for a cell."""
-    row_lines: ClassVar[int] = CELL_LINES
+    row_lines: int = CELL_LINES
 
     def hint_at(self, place: Place) -> str:
         number = self.cell_at(place)
@@ -209,13 +210,6 @@ class SwatchField(Widget):
 
     def nudge(self, steps: float) -> object:
         return self.step(1 if steps > 0 else -1)
-
-
-@dataclass(frozen=True)
-class PaintField(SwatchField):
-    """A page of colors as a row of the menu."""
-
-    row_lines: ClassVar[int] = COLUMNS * CELL_LINES
 
 
 @lru_cache(maxsize=8)
