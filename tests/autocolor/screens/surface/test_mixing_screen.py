@@ -9,7 +9,7 @@ from autocolor import Mesh, Paint, Palette, scene_of
 from autocolor.arrays import Booleans, Words
 from autocolor.checks import Color
 from autocolor.files.state import recent_colors
-from autocolor.mapping.colors import Hsv, blend_level, color_of_hsv, hsv_of
+from autocolor.mapping.colors import Hsv, color_of_hsv, hsv_of
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import FINISHES, finished, swatches
 from autocolor.screens.session import Clipboard
@@ -171,15 +171,6 @@ def test_the_white_bar_makes_tints_and_shades_and_comes_back(hand: PaintingHand)
     assert red == green == blue + 155
 
 
-def test_the_bar_between_sets_the_blend(hand: PaintingHand) -> None:
-    levels = hand.viewer.studio.level_ranges["box 0"].levels
-    for element in (100, 321):
-        hand.click(element, STRIP.top + 5)
-        wanted = int((element - STRIP.left) * (levels - 1) / (STRIP.width - 1) + 0.5)
-        assert blend_level(hand.paint.blend, levels) == wanted
-        assert bar_is_right(hand)
-
-
 def ramp_of(hand: PaintingHand) -> tuple[Color, ...]:
     ramp = hand.paint.ramp
     assert ramp is not None
@@ -309,15 +300,6 @@ def test_a_finish_replaces_a_ramp_and_another_surface_takes_it(hand: PaintingHan
     assert hand.paint.object_color == (255, 102, 0)
 
 
-@pytest.mark.parametrize("count", first(1, [2, 1, 60]))
-def test_leaving_restores_words_and_entries_byte_for_byte(tmp_path: Path, count: int) -> None:
-    hand = mixing(boxes_scene(count), tmp_path)
-    hand.pick("paints")
-    hand.drag((100, STRIP.top), (200, STRIP.top), (250, STRIP.top))
-    hand.leave()
-    assert hand.is_as_sent(hand.scene)
-
-
 @pytest.mark.parametrize(("count", "levels"), [(1, None), (2, 1005)])
 def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
     tmp_path: Path, count: int, levels: int | None
@@ -335,25 +317,6 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
     assert bar_is_right(hand, most_off=1)
     hand.leave()
     assert hand.is_as_sent(hand.scene)
-
-
-def test_a_color_is_typed_on_the_keyboard_or_picked_letter_by_letter(hand: PaintingHand) -> None:
-    hand.pick("number.object")
-    for letter in "#102030":
-        hand.pick(letter)
-    hand.pick("OK")
-    assert hand.paint.object_color == (16, 32, 48)
-    hand.press("left", "right")
-    hand.pick("number.light source")
-    hand.type("teal")
-    hand.press("return")
-    assert hand.paint.light_color == (0, 128, 128)
-    scene = hand.scene
-    hand.pick("number.light source")
-    hand.type("tael")
-    hand.press("return")
-    assert "teal" in hand.message
-    assert hand.scene is scene
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from autocolor.files.state import recent_colors
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, ROWS, swatches
 from autocolor.screens.keys import paste_text
-from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, SwatchField
+from autocolor.screens.surface.paint_choices import SwatchField
 from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Choice, Place
@@ -27,30 +27,44 @@ def hand(tmp_path: Path) -> PaintingHand:
     return mixing(boxes_scene(), tmp_path)
 
 
-def swatch_cell(hand: PaintingHand, shade: int, hue: int) -> Area:
-    """The cell of a swatch in the menu, without its grout."""
-    area = hand.widget("paints").area
-    left = area.left + (area.width - ROWS * CELL_ELEMENTS) // 2 + CELL_ELEMENTS * shade
-    top = area.top + CELL_LINES * hue
-    return Area(left, top, left + CELL_ELEMENTS - 2, top + CELL_LINES - 2)
+def paint_place(hand: PaintingHand, number: int) -> Place:
+    """The middle of the cell of a paint in the menu, counted row by row."""
+    field = hand.widget("paints")
+    assert isinstance(field, SwatchField)
+    down, across = divmod(number, field.across)
+    left = field.area.left + (field.area.width - field.across * field.width) // 2
+    middle = left + field.width * across + field.width // 2 - 1
+    return Place(middle, field.area.top + field.height * down + field.height // 2 - 1)
+
+
+def color_of_paint(hand: PaintingHand, number: int) -> Color:
+    """The color that the display shows for a paint."""
+    red, green, blue = hand.display.field()[paint_place(hand, number)[::-1]].tolist()
+    return red, green, blue
+
+
+def swatch_place(hand: PaintingHand, shade: int, hue: int) -> Place:
+    """The middle of the cell of a swatch: a row has the shades of a hue."""
+    return paint_place(hand, ROWS * hue + shade)
 
 
 def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
-    hand.click(*swatch_cell(hand, 4, 3).middle)
+    hand.click(*swatch_place(hand, 4, 3))
     assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
     hand.pick("section.light source")
-    hand.click(*swatch_cell(hand, 0, 19).middle)
+    hand.click(*swatch_place(hand, 0, 19))
     assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
     # A click on the shades chooses, too.
     hand.click(30, 160)
-    hand.drag(swatch_cell(hand, 0, 0).middle, swatch_cell(hand, 1, 2).middle)
+    hand.drag(swatch_place(hand, 0, 0), swatch_place(hand, 1, 2))
     assert hand.paint.object_color == tuple(swatches()[COLUMNS + 2])
     assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
 
 
 def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
+    field = hand.display.field()
     for number, color in enumerate(swatches()):
-        assert (hand.colors(swatch_cell(hand, *divmod(number, COLUMNS))) == color).all()
+        assert (field[swatch_place(hand, *divmod(number, COLUMNS))[::-1]] == color).all()
     assert shades_are_right(hand)
     assert bar_is_right(hand)
 
@@ -68,8 +82,8 @@ def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand)
     # Another surface takes it over.
     hand.pick("surface")
     recent = hand.widget("recent colors").area
-    place = swatch_cell(hand, 0, 0).left + 4, recent.top + 4
-    assert (hand.colors(Area(*place, place[0] + 4, place[1] + 4)) == [176, 100, 32]).all()
+    place = swatch_place(hand, 0, 0).element, recent.top + 4
+    assert (hand.colors(Area(*place, *place)) == [176, 100, 32]).all()
     hand.click(*place)
     assert hand.paint.object_color == (176, 100, 32)
     # Choosing another surface ends the mixing.
@@ -98,22 +112,6 @@ def bring(hand: PaintingHand, paints: Palette) -> None:
     folder = hand.viewer.session.folder
     write_palette(folder / FILE, paints, overwrite=True)
     hand.viewer.on_drop(folder / FILE)
-
-
-def paint_place(hand: PaintingHand, number: int) -> Place:
-    """The middle of the cell of a paint in the menu."""
-    field = hand.widget("paints")
-    assert isinstance(field, SwatchField)
-    down, across = divmod(number, field.across)
-    left = field.area.left + (field.area.width - field.across * field.width) // 2
-    middle = left + field.width * across + field.width // 2 - 1
-    return Place(middle, field.area.top + field.height * down + field.height // 2 - 1)
-
-
-def color_of_paint(hand: PaintingHand, number: int) -> Color:
-    """The color that the display shows for a paint."""
-    red, green, blue = hand.display.field()[paint_place(hand, number)[::-1]].tolist()
-    return red, green, blue
 
 
 @pytest.mark.parametrize("paints", first(1, [FEW, MANY]))
@@ -184,11 +182,12 @@ def test_keys_take_paint_after_paint_although_some_have_one_color(hand: Painting
 def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(hand: PaintingHand) -> None:
     board, yellow = hand.viewer.board, (248, 243, 43)
     for name, color in (("teal", (0, 128, 128)), ("TEAL", yellow), ("navy", (0, 0, 128))):
-        hand.pick("number.object")
+        hand.pick("number.light source")
         board.typing.insert(name)
         hand.press("return")
-        assert hand.paint.object_color == color
+        assert hand.paint.light_color == color
         bring(hand, FEW)
+    hand.click(30, 160)
     paste_text(board, "old red")
     assert hand.paint.object_color == (165, 32, 25)
     hand.leave()
@@ -197,18 +196,17 @@ def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(h
 
 
 def test_the_key_of_the_next_color_goes_through_the_paints(hand: PaintingHand) -> None:
-    own = hand.paint.object_color
     bring(hand, FEW)
+    red, teal, blue, own = "Old red, #a52019", "Teal, #f8f32b", "#0e294b", in_digits(hand.paint.object_color)
     messages = []
-    for _ in range(4):
-        hand.press("c")
-        messages.append(hand.message)
-    assert messages == [
-        "object color Old red, #a52019",
-        "object color Teal, #f8f32b",
-        "object color #0e294b",
-        f"object color {in_digits(own)}",
-    ]
+    for key in ("c", "c", "c", "c", "Shift+C", "Shift+C", "Shift+C", "Shift+C"):
+        hand.press(key)
+        messages.append(hand.message.removeprefix("object color "))
+    assert messages == [red, teal, blue, own, blue, teal, red, own]
+    # A color that came from elsewhere is followed by the first.
+    change_paint(hand.viewer.session, object_color="#654321")
+    hand.press("c")
+    assert hand.message == f"object color {own}"
 
 
 def test_paints_that_cannot_be_read_leave_those_before(hand: PaintingHand) -> None:
