@@ -15,7 +15,7 @@ from autocolor.screens.picture.split_screen import FIRST, MIDDLE, halves_of
 from autocolor.studio import Studio
 from autocolor.widgets.items import HEIGHT, WHITE
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.ball import ball_scene, hand_before, seen_on
+from tests.autocolor.screens.ball import ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
 from tests.tables import first
 
@@ -80,23 +80,6 @@ def test_the_state_before_is_at_the_left_of_the_line_and_the_present_one_at_the_
         assert is_exact == (off == 0)
         for true, part in ((before, slice(None, line - 1)), (after, slice(line + 1, None))):
             assert np.abs(shown[:, part] - true[:, part])[MARKED.stop :].max() <= off
-
-
-@pytest.mark.parametrize("edit", first(1, EDITS))
-def test_leaving_restores_every_word_and_every_entry(edit: str, tmp_path: Path) -> None:
-    hand = hand_after(edit, tmp_path)
-    hand.move(300, 300)
-    hand.viewer.tell("")
-    before = seen_on(hand)
-    split(hand)
-    hand.drag((320, 200), (250, 210), (100, 230))
-    assert hand.viewer.page == "split"
-    assert seen_on(hand) != before
-    hand.open_menu()
-    hand.turn_to("picture")
-    hand.move(300, 300)
-    hand.viewer.tell("")
-    assert seen_on(hand) == before
 
 
 def test_a_drag_moves_the_line_by_the_words_between_alone(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -67,10 +68,10 @@ def test_the_bars_of_a_color_have_its_numbers_and_set_them_to_the_element(
         assert values()[4:] == list(hsv_of(color()))
 
 
-def has_surface(hand: PaintingHand, words: Words, surface: str = "") -> Booleans:
-    """Whether each word is of a surface, the chosen one if none is given."""
-    first, levels = hand.viewer.studio.level_ranges[surface or hand.viewer.session.surface_name]
-    return (first <= words) & (words < first + levels)
+def has_surface(hand: PaintingHand, words: Words) -> Booleans:
+    """Whether each word is of the chosen surface."""
+    levels = hand.viewer.studio.level_ranges[hand.viewer.session.surface_name]
+    return (levels.first <= words) & (words <= levels.last)
 
 
 def crop(hand: PaintingHand) -> Crop:
@@ -78,17 +79,13 @@ def crop(hand: PaintingHand) -> Crop:
     return crop_of(has_surface(hand, hand.viewer.studio.words), PICTURE)
 
 
-def whole_picture(hand: PaintingHand) -> Crop:
-    """The whole picture, from which paints and colors are taken."""
-    return crop_of(np.ones(hand.viewer.studio.words.shape, np.bool_), WORK)
-
-
-def place_in_picture(hand: PaintingHand, surface: str, shown: Crop | None = None) -> tuple[int, int]:
+def place_in_picture(hand: PaintingHand, surface: str) -> tuple[int, int]:
     """An element and a line of the screen where the picture shows a surface."""
-    shown = shown or crop(hand)
-    places = np.argwhere(has_surface(hand, shown.of(hand.viewer.studio.words), surface))
-    line, element = places[len(places) // 2].tolist()
-    return shown.area.left + element, shown.area.top + line
+    content = hand.viewer.board.content
+    grid = product(range(0, WORK.right, 4), range(WORK.top, WORK.bottom, 4))
+    samples = ((place, content.sample(*place)) for place in grid)
+    places = [place for place, seen in samples if seen is not None and seen.surface == surface]
+    return places[len(places) // 2]
 
 
 def test_the_picture_shows_the_chosen_surface_in_its_words_and_the_others_in_grays(
@@ -316,7 +313,7 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
     assert shades_are_right(hand)
     assert bar_is_right(hand, most_off=1)
     hand.leave()
-    assert hand.is_as_sent(hand.scene)
+    assert hand.shows(hand.scene)
 
 
 @pytest.mark.parametrize(
@@ -359,7 +356,7 @@ def test_a_scene_without_surfaces_in_use_says_so(tmp_path: Path) -> None:
     hand.press("p")
     hand.click(30, 60)
     hand.leave()
-    assert hand.is_as_sent(empty)
+    assert hand.shows(empty)
 
 
 @pytest.mark.parametrize("color", first(1, [(176, 16, 32), (3, 1, 2), (255, 255, 254)]))
@@ -386,10 +383,10 @@ def test_the_unit_takes_the_paint_of_a_surface_that_it_picks_in_the_whole_pictur
     hand.pick("take paint")
     assert hand.message == "pick a surface: box 0 takes both its colors, blend and percentage; Esc ends"
     # The picture is seen in its own colors.
-    shown = whole_picture(hand)
+    shown = crop_of(np.ones(hand.viewer.studio.words.shape, np.bool_), WORK)
     assert np.array_equal(hand.words(shown.area), shown.of(hand.viewer.studio.words))
     assert np.array_equal(hand.display.entries, entries)
-    there = place_in_picture(hand, "box 1", shown)
+    there = place_in_picture(hand, "box 1")
     told = "pick the paint of box 1: #1e5ac8 and #ffffff, blend 0.70; Esc ends"
     assert hand.viewer.board.content.hint(*there) == told
     hand.click(*there)
@@ -406,7 +403,7 @@ def test_the_unit_takes_a_color_as_it_is_seen(hand: PaintingHand) -> None:
     hand.pick("take color")
     wanted = "its color as you see it becomes the light source color; Esc ends"
     assert hand.message == f"pick a pixel: {wanted}"
-    element, line = place_in_picture(hand, "box 1", whole_picture(hand))
+    element, line = place_in_picture(hand, "box 1")
     red, green, blue = hand.colors(Area(element, line, element, line))[0, 0].tolist()
     digits = in_digits((red, green, blue))
     hint = hand.viewer.board.content.hint(element, line)
@@ -427,10 +424,10 @@ def test_taking_ends_without_a_pick_and_goes_on_after_a_refused_pick(hand: Paint
     hand.pick("take paint")
     hand.click(20, 60)
     assert hand.message.startswith("no surface is there; pick a surface")
-    hand.click(*place_in_picture(hand, "box 0", whole_picture(hand)))
+    hand.click(*place_in_picture(hand, "box 0"))
     assert hand.message.startswith("box 0 is the chosen surface")
     assert hand.scene is scene
-    hand.click(*place_in_picture(hand, "box 1", whole_picture(hand)))
+    hand.click(*place_in_picture(hand, "box 1"))
     assert hand.paint == PAINTS[1]
 
 
