@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -121,15 +120,9 @@ FRACTIONS = st.floats(0, 1)
 
 
 def is_a_curve(points: CurvePoints) -> bool:
-    xs, ys = zip(*points, strict=True)
-    return (
-        xs[0] == 0
-        and xs[-1] == 1
-        and all(a < b for a, b in pairwise(xs))
-        and all(a <= b for a, b in pairwise(ys))
-        and min(ys) >= 0
-        and max(ys) <= 1
-    )
+    xs, ys = np.transpose(points)
+    rises = (np.diff(xs) > 0).all() and (np.diff(ys) >= 0).all()
+    return bool(rises and (xs[0], xs[-1]) == (0, 1) and ys[0] >= 0 and ys[-1] <= 1)
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(0, 30), FRACTIONS, FRACTIONS)))
@@ -152,12 +145,10 @@ CLOSE = ((0.0, 0.0), (0.5, 0.2), (0.505, 0.4), (0.51, 0.6), (1.0, 1.0))
 @pytest.mark.parametrize(
     ("points", "number", "to", "lands"),
     [
-        (FIVE, 1, (0.3, 0.4), (0.3, 0.4)),
         # Between its neighbors.
         (FIVE, 1, (0.9, 0.9), (0.49, 0.5)),
         (FIVE, 2, (0.0, 0.0), (0.26, 0.25)),
         # The ends, and a point between close neighbors, move up and down alone.
-        (FIVE, 0, (0.5, 0.2), (0, 0.2)),
         (FIVE, 4, (0.5, 0.8), (1, 0.8)),
         (CLOSE, 2, (0.9, 0.5), (0.505, 0.5)),
     ],

@@ -16,7 +16,7 @@ from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Choice, Place
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.mixing import ZERO, bar_is_right, line_of, mixing, shades_are_right
+from tests.autocolor.screens.mixing import ZERO, bar_is_right, mixing, shades_are_right
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
 from tests.autocolor.widgets.drawing import draw_items
 from tests.tables import first
@@ -70,9 +70,9 @@ def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
 
 
 def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "object, green"))
-    hand.click(ZERO + 100, line_of(hand, "object, green"))
-    hand.click(ZERO + 99, line_of(hand, "object, blue"))
+    hand.click(ZERO + 99, hand.middle("object, green")[1])
+    hand.click(ZERO + 100, hand.middle("object, green")[1])
+    hand.click(ZERO + 99, hand.middle("object, blue")[1])
     hand.pick(" ", 0.1)
     assert recent_colors() == ()
     hand.leave()
@@ -87,7 +87,7 @@ def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand)
     hand.click(*place)
     assert hand.paint.object_color == (176, 100, 32)
     # Choosing another surface ends the mixing.
-    hand.click(ZERO + 99, line_of(hand, "light source, green"))
+    hand.click(ZERO + 99, hand.middle("light source, green")[1])
     hand.pick("surface")
     assert (255, 99, 255) in recent_colors()
 
@@ -96,8 +96,8 @@ def test_a_mixed_color_of_a_ramp_is_a_recent_color_and_the_others_are_not(hand: 
     change_paint(hand.viewer.session, ramp=["#100", "#200", "#300", "#400"])
     hand.pick("ramp bar", 0.3)
     hand.pick("add color")
-    hand.click(ZERO + 102, line_of(hand, "color 3, red"))
-    hand.click(ZERO + 99, line_of(hand, "color 3, green"))
+    hand.click(ZERO + 102, hand.middle("color 3, red")[1])
+    hand.click(ZERO + 99, hand.middle("color 3, green")[1])
     hand.pick("surface")
     assert recent_colors() == ((102, 99, 0),)
 
@@ -142,16 +142,9 @@ def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paint
 def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(hand: PaintingHand) -> None:
     bring(hand, FEW)
     hand.viewer.tell("")
-    shown = []
-    for number in range(4):
+    for number, paint in ((3, "#0e294b"), (2, "Old red, #a52019")):
         hand.move(*paint_place(hand, number))
-        shown.append(hand.viewer.board.messages[0].text)
-    assert shown == [
-        "Signal red, #a52019: click it for the object color",
-        "Teal, #f8f32b: click it for the object color",
-        "Old red, #a52019: click it for the object color",
-        "#0e294b: click it for the object color",
-    ]
+        assert hand.hint == f"{paint}: click it for the object color"
     hand.click(*paint_place(hand, 2))
     assert hand.message == "object: Old red, #a52019"
     assert hand.paint.object_color == (165, 32, 25)
