@@ -103,6 +103,7 @@ class MappingScreen(OverPicture):
     def _rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
         others = ("name", "view", "scalar", "front", "stage", "backdrop", *OF_DISPLAY)
+        inner = range(1, len(self._points) - 1)
         return [
             Choice(
                 "mapping",
@@ -121,7 +122,7 @@ class MappingScreen(OverPicture):
             Button(
                 "remove point",
                 "Remove the yellow point, which was touched last.",
-                "" if self._removes else "click at a point between the ends of the curve first",
+                "" if self._touched in inner else "click at a point between the ends of the curve first",
                 run=self._remove,
             ),
             Button(
@@ -138,11 +139,6 @@ class MappingScreen(OverPicture):
             Section("display words"),
             *rows_of(scene, self._put, session.world, columns=OF_DISPLAY),
         ]
-
-    @property
-    def _removes(self) -> bool:
-        """Whether a point was touched that can be removed; the ends of the curve stay."""
-        return self._touched is not None and 0 < self._touched < len(self._points) - 1
 
     def _remove(self) -> None:
         touched, self._touched = self._touched, None

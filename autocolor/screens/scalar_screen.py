@@ -21,10 +21,9 @@ from autocolor.scene.scalar import Scalar
 from autocolor.screens.picture.over_picture import OverPicture, surface_row
 from autocolor.screens.screen import Content, Surroundings
 from autocolor.widgets.bars import Bar, bar_within
-from autocolor.widgets.rows import rows_of
+from autocolor.widgets.rows import NONE, rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget
 
-NO_SCALAR: Final = "none"
 ZEBRA: Final = "zebra"
 """The name of a computed scalar, and of the scale that it is for."""
 
@@ -55,8 +54,8 @@ class ScalarScreen(OverPicture):
         choice = Choice(
             "scalar",
             "The scalar that colors the surfaces: a scalar of the mesh, or a computed scalar.",
-            names=(NO_SCALAR, *scene.scalar_names),
-            present=NO_SCALAR if scalar is None else scalar.name,
+            names=(NONE, *scene.scalar_names),
+            present=NONE if scalar is None else scalar.name,
             choose=self._choose,
         )
         if scalar is None:
@@ -71,8 +70,8 @@ class ScalarScreen(OverPicture):
             *self._scale_rows(scalar),
             Gap("limits gap"),
             *self._limit_rows(scalar),
-            self._color_row("below", beyond.format("below", "first"), scalar.below, (NO_COLOR, *NAMED)),
-            self._color_row("above", beyond.format("above", "last"), scalar.above, (NO_COLOR, *NAMED)),
+            self._color_row("below", beyond.format("below", "first"), scalar.below, (NONE, *NAMED)),
+            self._color_row("above", beyond.format("above", "last"), scalar.above, (NONE, *NAMED)),
             self._color_row("missing", "The color where there is no value.", scalar.missing, tuple(NAMED)),
             Gap("bands gap"),
             *rows_of(scalar, self._put, session.world, leave_out=(*WITH_ROWS, *unused)),
@@ -88,7 +87,6 @@ class ScalarScreen(OverPicture):
         ]
 
     def _scale_rows(self, scalar: Scalar) -> list[Widget]:
-        """The color scale, and whether it is reversed."""
         name = scalar.scale if isinstance(scalar.scale, str) else OWN_COLORS
         base = name.removesuffix(REVERSED)
         end = name.removeprefix(base)
@@ -158,7 +156,7 @@ class ScalarScreen(OverPicture):
             column,
             help,
             names=names,
-            present=NO_COLOR if color is None else name_of.get(color, in_digits(color)),
+            present=NONE if color is None else name_of.get(color, in_digits(color)),
             choose=lambda name: self._put({column: NAMED.get(name)}),
         )
 
@@ -185,7 +183,7 @@ class ScalarScreen(OverPicture):
     def _choose(self, name: str) -> None:
         """Show another scalar in its own range, or none. Zebra stripes bring and take their own colors."""
         scene = self.session.scene
-        if name == NO_SCALAR:
+        if name == NONE:
             self.session.edit(scene.without_scalar())
             return
         colors: dict[str, Any] = {}
@@ -214,5 +212,3 @@ NAMED: Final[Mapping[str, Color]] = {
     "blue": (0, 0, 255),
 }
 """Assumed: colors enough to differ from any color scale."""
-
-NO_COLOR: Final = "none"

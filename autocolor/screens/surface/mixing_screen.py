@@ -20,7 +20,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Words
+from autocolor.arrays import Words
 from autocolor.checks import Color
 from autocolor.errors import InputError, UsageError
 from autocolor.mapping.colors import (
@@ -50,6 +50,7 @@ from autocolor.screens.surface.painting import (
     PaintColor,
     change_paint,
     color_of,
+    colors_of,
     edit_paint,
     paint_rows,
     take_paint,
@@ -87,11 +88,6 @@ FINISHES_ROW: Final = Area(
 
 PICTURE: Final = Area(LEFT, FINISHES_ROW.bottom + 3, RIGHT_END, WORK.bottom)
 """The room for the picture of the surface."""
-
-
-def section_area(is_upper: bool) -> Area:
-    """The area of a section: its heading, the shades and the bars."""
-    return Area(LEFT, TOPS[is_upper], RIGHT_END, TOPS[is_upper] + SECTION_LINES - 1)
 
 
 HEX_LEFT: Final = LEFT_END + 1 - CHARACTER * len("#rrggbb") - 2 * MARGIN
@@ -202,8 +198,10 @@ class MixingScreen(Screen):
 
     def _section_at(self, element: int, line: int) -> bool | None:
         """Whether a place is in the upper section; None beside both."""
-        sections = () if self._taking else (False, True)
-        return next((each for each in sections if section_area(each).has(element, line)), None)
+        if self._taking or not LEFT <= element <= RIGHT_END:
+            return None
+        sections = zip((False, True), TOPS, strict=True)
+        return next((is_upper for is_upper, top in sections if top <= line < top + SECTION_LINES), None)
 
     # Widgets and items.
 
@@ -220,9 +218,11 @@ class MixingScreen(Screen):
             self._stand_ins = stand_ins
         draw = partial(self._draw, shown.words)
         crop, picture = self._picture.of(draw, shown.words, self._stand_ins, self._surface)
+        light, object_color = (self._in_section(is_upper).color for is_upper in (True, False))
+        table = words.table(shown.entries, light, object_color, self.choices.colors)
         return Content(
             items=[*(() if self._taking else self._items(words)), picture],
-            loads=() if self._taking else [(0, self._table(words, shown.entries))],
+            loads=() if self._taking else [(0, table)],
             widgets=() if self._taking else self._widgets(words),
             rows=partial(self._rows, words),
             hint=partial(self._hint, crop),
@@ -232,11 +232,6 @@ class MixingScreen(Screen):
             pick=partial(self._pick, crop),
             escape=self._end_taking,
         )
-
-    def _table(self, words: MixingWords, entries: Bytes) -> Bytes:
-        """The lookup table with the colors beside the picture."""
-        light, object_color = (self._in_section(is_upper).color for is_upper in (True, False))
-        return words.table(entries, light, object_color, self.choices.colors)
 
     def _image_with(self, finish: str) -> DisplayImage:
         """The image on the display; with a finish, as the chosen surface would look with it."""
@@ -371,7 +366,6 @@ class MixingScreen(Screen):
         ]
 
     def _finishes(self) -> list[Widget]:
-        """The finishes, side by side in a row."""
         width = FINISHES_ROW.width // len(FINISHES)
         area = FINISHES_ROW._replace(right=LEFT + width - 1)
         return [
@@ -407,19 +401,19 @@ class MixingScreen(Screen):
     def _hint(self, crop: Crop, element: int, line: int) -> str:
         sample = self._sample(crop, element, line)
         name = "" if sample is None else sample.surface
-        is_own = name == self._surface
         if sample is not None and self._taking == COLOR:
             where = name or "the background"
             return f"pick {in_digits(sample.color)} of {where} as {self._chosen.name}; Esc ends"
-        if self._taking and (is_own or not name):
+        if self._taking and name in ("", self._surface):
             return self._prompt(self._taking)
         if self._taking:
             paint = self.session.scene.surfaces[name].paint
-            colors = f"{in_digits(paint.object_color)} and {in_digits(paint.light_color)}"
-            blend = f"{colors}, blend {paint.blend:.2f}"
-            ramp = "" if paint.ramp is None else f"a ramp of {len(paint.ramp)} colors"
-            return f"pick the paint of {name}: {ramp or blend}; Esc ends"
-        if sample is not None and is_own:
+            colors = " and ".join(in_digits(color) for color in colors_of(paint))
+            looks = f"{colors}, blend {paint.blend:.2f}"
+            if paint.ramp is not None:
+                looks = f"a ramp of {len(paint.ramp)} colors"
+            return f"pick the paint of {name}: {looks}; Esc ends"
+        if sample is not None and name == self._surface:
             meaning = self.session.studio.display_image.meaning
             return f"{name}, {meaning} {sample.level} of {self._levels - 1}"
         return f"{name}: click to mix its colors; P: take its paint" if name else self.help

@@ -304,4 +304,5 @@ def test_a_scene_is_saved_when_it_has_files() -> None:
 
 def test_the_lines_fit_into_the_panel() -> None:
     room = (WORK.width - 2 * MARGIN) // CHARACTER
-    assert max(len(line) for lines in (END, *(lesson.lines for lesson in LESSONS)) for line in lines) <= room
+    texts = [END, *(lesson.text for lesson in LESSONS)]
+    assert all(len(line) <= room for text in texts for line in text.splitlines())
