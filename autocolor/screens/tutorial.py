@@ -151,14 +151,17 @@ class Tutorial:
         """The panel, the topmost widget first; the next lesson if this one has been done."""
         if self.has_ended:
             return ()
-        if self.lesson is not None and self.lesson.is_done(
-            self._before, work_of(self._session.studio.history)
-        ):
+        now = work_of(self._session.studio.history)
+        if self.lesson is not None and self.lesson.is_done(self._before, now):
             self._go_on(True)
         height = HEAD_LINES if self._is_folded else LINES
         top = WIDE_BAR.top - height if self._is_low else WORK.top
         area = Area(WORK.left, top, WORK.right, top + height - 1)
-        head, ink = ("well done!  ", GREEN) if self._is_done else ("", YELLOW)
+        title, text = "end of the tutorial", END
+        if self.lesson is not None:
+            title, text = f"{self._number + 1} of {len(LESSONS)}: {self.lesson.name}", self.lesson.text
+        head = (f"well done!  {title}", GREEN) if self._is_done else (title, YELLOW)
+        lines = [head, *((line, WHITE) for line in text.splitlines())]
         buttons = [
             ("end", "End the tutorial; your work stays.", partial(setattr, self, "has_ended", True)),
             (
@@ -166,29 +169,21 @@ class Tutorial:
                 "Move the panel out of the way.",
                 partial(setattr, self, "_is_low", not self._is_low),
             ),
-        ]
-        if self.lesson is None:
-            head, text = f"{head}end of the tutorial", END
-        else:
-            head, text = f"{head}{self._number + 1} of {len(LESSONS)}: {self.lesson.name}", self.lesson.text
             # At the left, so that the other buttons stay in their places when it goes.
-            buttons.append(("skip", "Go on without doing this.", partial(self._go_on, False)))
+            ("skip", "Go on without doing this.", partial(self._go_on, False)),
+        ]
         panel: list[Widget] = []
-        right = area.right - 1
-        for label, help, run in buttons:
-            place = Area(right - BUTTON + 1, area.top + 1, right, area.top + HEAD_LINES - 2)
+        for number, (label, help, run) in enumerate(buttons if self.lesson else buttons[:2], start=1):
+            left = area.right - number * BUTTON
+            place = Area(left, area.top + 1, left + BUTTON - 1, area.top + HEAD_LINES - 2)
             panel.append(PanelButton(label, help, area=place, run=run, within="tutorial"))
-            right -= BUTTON
         return [
             *panel,
             Panel(
                 "tutorial",
                 "Fold the panel, or show it whole.",
                 area=area,
-                lines=[
-                    (head, ink),
-                    *(() if self._is_folded else ((line, WHITE) for line in text.splitlines())),
-                ],
+                lines=lines[:1] if self._is_folded else lines,
                 run=partial(setattr, self, "_is_folded", not self._is_folded),
             ),
         ]

@@ -101,10 +101,6 @@ PAINT: Final = "paint"
 COLOR: Final = "color"
 """The things that can be taken from the picture."""
 
-AS_IT_IS: Final = np.arange(WORDS, dtype=np.uint16)
-"""The words that stand for the words of a picture that is shown in its own colors."""
-
-
 BARS: Final = (
     ("red", FULL, "", RED),
     ("green", FULL, "", GREEN),
@@ -161,7 +157,7 @@ class MixingScreen(Screen):
         self._taking = ""
         """The thing that the user picks in the whole picture: PAINT, COLOR, or nothing."""
         self._image: Cached[DisplayImage] = Cached()
-        self._stand_ins: Words = AS_IT_IS
+        self._stand_ins: Words = np.empty(0, np.uint16)
         """The words that stand for the words of the picture; the same array until they change."""
         self._picture: Cached[tuple[Crop, Item]] = Cached()
 
@@ -213,7 +209,8 @@ class MixingScreen(Screen):
         words = mixing_words(tuple(studio.level_ranges.items()), self._surface, len(self.choices.colors))
         finish = around.lit if around.lit in FINISHES and not self._taking else ""
         shown = self._image.of(lambda: self._image_with(finish), studio.display_image, finish)
-        stand_ins = AS_IT_IS if self._taking else words.dimmed(shown.entries)
+        # A picture to take from is shown as it is.
+        stand_ins = np.arange(WORDS, dtype=np.uint16) if self._taking else words.dimmed(shown.entries)
         if not np.array_equal(stand_ins, self._stand_ins):
             self._stand_ins = stand_ins
         draw = partial(self._draw, shown.words)
