@@ -136,5 +136,5 @@ def tell_effect(session: Session) -> bool:
 
 def hold_ranges(session: Session, image: DisplayImage) -> None:
     """Hold the ranges of an image before the last edits, as one step, so that less light is darker."""
-    session.edit(session.scene.replace(exposure=tuple(ranges_to_hold(image).items())))
+    session.edit(session.scene.replace(exposure=ranges_to_hold(image)))
     session.tell("all ranges are held as before the edit: less light is darker")

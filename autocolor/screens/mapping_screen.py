@@ -427,7 +427,7 @@ def held_rows(session: Session) -> list[Widget]:
 
     def hold(minimum: float, maximum: float) -> None:
         limits = {**dict(exposure), name: (minimum, maximum)}
-        session.edit(session.scene.replace(exposure=tuple(limits.items())))
+        session.edit(session.scene.replace(exposure=limits))
 
     of = "all surfaces" if name == OBJECT else name
     return [

@@ -179,10 +179,6 @@ def test_a_new_point_lands_where_it_was_put_and_others_make_way(
 HELD = (("low", (0.1, 0.5)), ("object", (0.0, 2.0)))
 
 
-def labels_of(hand: Hand) -> list[str]:
-    return [row.label for row in hand.viewer.board.content.rows()]
-
-
 def limits_of(hand: Hand, name: str) -> tuple[float, float]:
     return dict(hand.viewer.studio.scene.exposure)[name]  # type: ignore[arg-type]
 
@@ -302,8 +298,8 @@ def test_a_surface_of_one_intensity_or_out_of_sight_has_no_range_to_hold(
 
 def test_many_surfaces_have_no_rows(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "mapping", strips(11))
-    assert not {"strip 0", "maximum"} & set(labels_of(hand))
-    assert "strip 0" in labels_of(hand_at(tmp_path, "mapping", strips(10)))
+    assert not {"strip 0", "maximum"} & set(hand.labels)
+    assert "strip 0" in hand_at(tmp_path, "mapping", strips(10)).labels
     assert hand.widget("exposure").present == "99.5 %"  # type: ignore[attr-defined]
 
 

@@ -408,16 +408,6 @@ def test_taking_ends_without_a_pick_and_goes_on_after_a_refused_pick(hand: Paint
     assert hand.paint == PAINTS[1]
 
 
-def test_keys_take_the_paint_and_the_color_under_the_pointer(hand: PaintingHand) -> None:
-    hand.move(*place_in_picture(hand, "box 1"))
-    pixel = crop(hand).pixel_at(*place_in_picture(hand, "box 1"))
-    color = tuple(hand.viewer.studio.entries[hand.viewer.studio.words[pixel]].tolist())
-    hand.press("Shift+P")
-    assert hand.paint == PAINTS[0].replace(object_color=color)
-    hand.press("p")
-    assert hand.paint == PAINTS[1]
-
-
 def test_a_color_is_copied_and_pasted_over_its_section_and_elsewhere_as_the_chosen_color(
     hand: PaintingHand,
 ) -> None:
