@@ -98,8 +98,6 @@ class MappingScreen(OverPicture):
             wheel=self._wheel,
         )
 
-    # The menu.
-
     def _rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
         others = ("name", "view", "scalar", "front", "stage", "backdrop", *OF_DISPLAY)
@@ -146,8 +144,6 @@ class MappingScreen(OverPicture):
 
     def _put(self, changes: Mapping[str, Any]) -> None:
         self.session.edit(self.session.scene.replace(**changes))
-
-    # The curve.
 
     # On the panel, gestures are for the curve, and beside it for the picture.
 

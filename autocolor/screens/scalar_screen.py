@@ -63,11 +63,29 @@ class ScalarScreen(OverPicture):
         is_computed = scalar.name not in {each.name for each in scene.mesh.scalars}
         unused = [key for key, names in COMPUTED_WITH.items() if not (is_computed and scalar.name in names)]
         is_placed = scalar.legend_place is not None
+        scale = scalar.scale if isinstance(scalar.scale, str) else OWN_COLORS
+        base = scale.removesuffix(REVERSED)
+        end = scale.removeprefix(base)
+        name, colored = session.surface_name, colored_surfaces(scene)
+        wanted = [row.name for row in scene.surfaces if row.name in {*colored} ^ {name}]
         beyond = "The color of values {} the limits; none: the color of the {} band."
         return [
             choice,
             Gap("scale gap"),
-            *self._scale_rows(scalar),
+            Choice(
+                "scale",
+                "The colors of the bands; only entries are sent.",
+                names=tuple(each for each in COLOR_SCALES if not each.endswith(REVERSED)),
+                present=base,
+                choose=lambda chosen: self._put({"scale": chosen + end}),
+            ),
+            Switch(
+                "reversed",
+                "Let the scale run from its last color to its first.",
+                "" if scale != OWN_COLORS else "the scale is a list of colors; choose one with a name first",
+                is_on=bool(end),
+                flip=lambda: self._put({"scale": base if end else base + REVERSED}),
+            ),
             Gap("limits gap"),
             *self._limit_rows(scalar),
             self._color_row("below", beyond.format("below", "first"), scalar.below, (NONE, *NAMED)),
@@ -83,27 +101,13 @@ class ScalarScreen(OverPicture):
                 flip=lambda: self._put({"legend_place": None if is_placed else CORNERS[0]}),
             ),
             Gap("surfaces gap"),
-            *self._surface_rows(),
-        ]
-
-    def _scale_rows(self, scalar: Scalar) -> list[Widget]:
-        name = scalar.scale if isinstance(scalar.scale, str) else OWN_COLORS
-        base = name.removesuffix(REVERSED)
-        end = name.removeprefix(base)
-        return [
-            Choice(
-                "scale",
-                "The colors of the bands; only entries are sent.",
-                names=tuple(each for each in COLOR_SCALES if not each.endswith(REVERSED)),
-                present=base,
-                choose=lambda chosen: self._put({"scale": chosen + end}),
-            ),
+            surface_row(session, "A surface, for the switch below; a click in the picture chooses, too."),
             Switch(
-                "reversed",
-                "Let the scale run from its last color to its first.",
-                "" if name != OWN_COLORS else "the scale is a list of colors; choose one with a name first",
-                is_on=bool(end),
-                flip=lambda: self._put({"scale": base if end else base + REVERSED}),
+                "colored",
+                f"Whether the scalar colors {name}; else it has its own colors.",
+                "" if name else "the scene has no surface in use",
+                is_on=name in colored,
+                flip=lambda: self._put({"surfaces": wanted}),
             ),
         ]
 
@@ -159,26 +163,6 @@ class ScalarScreen(OverPicture):
             present=NONE if color is None else name_of.get(color, in_digits(color)),
             choose=lambda name: self._put({column: NAMED.get(name)}),
         )
-
-    def _surface_rows(self) -> list[Widget]:
-        """The chosen surface, and whether the scalar colors it."""
-        session = self.session
-        colored, name = colored_surfaces(session.scene), session.surface_name
-
-        def flip() -> None:
-            wanted = {*colored} ^ {name}
-            self._put({"surfaces": [each.name for each in session.scene.surfaces if each.name in wanted]})
-
-        return [
-            surface_row(session, "A surface, for the switch below; a click in the picture chooses, too."),
-            Switch(
-                "colored",
-                f"Whether the scalar colors {name}; else it has its own colors.",
-                "" if name else "the scene has no surface in use",
-                is_on=name in colored,
-                flip=flip,
-            ),
-        ]
 
     def _choose(self, name: str) -> None:
         """Show another scalar in its own range, or none. Zebra stripes bring and take their own colors."""

@@ -93,10 +93,6 @@ PICTURE: Final = Area(LEFT, FINISHES_ROW.bottom + 3, RIGHT_END, WORK.bottom)
 HEX_LEFT: Final = LEFT_END + 1 - CHARACTER * len("#rrggbb") - 2 * MARGIN
 """The first element of the number of a color, at the end of its heading."""
 
-FEW: Final = "a ramp has at least 2 colors; to have none, switch the ramp off"
-MANY: Final = f"a ramp has at most {MOST_RAMP_COLORS:,} colors; remove a color first"
-"""Why a color of a ramp can be neither removed nor added."""
-
 PAINT: Final = "paint"
 COLOR: Final = "color"
 """The things that can be taken from the picture."""
@@ -168,8 +164,6 @@ class MixingScreen(Screen):
         self._taking = ""
         self.choices.note_mixed()
 
-    # The chosen surface and its colors.
-
     @property
     def _surface(self) -> str:
         return self.session.surface_name
@@ -198,8 +192,6 @@ class MixingScreen(Screen):
             return None
         sections = zip((False, True), TOPS, strict=True)
         return next((is_upper for is_upper, top in sections if top <= line < top + SECTION_LINES), None)
-
-    # Widgets and items.
 
     def build(self, around: Surroundings) -> Content:
         studio = self.session.studio
@@ -271,17 +263,18 @@ class MixingScreen(Screen):
     def _ramp_rows(self, ramp: tuple[Color, ...]) -> list[Widget]:
         lower, chosen = self._in_section(False).number, self._chosen.number
         between = mixed(ramp[lower], ramp[lower + 1], 0.5)
+        many = f"a ramp has at most {MOST_RAMP_COLORS:,} colors; remove a color first"
         return [
             Button(
                 "add color",
                 f"Add a color to the ramp, between the colors {lower + 1} and {lower + 2}.",
-                MANY if len(ramp) == MOST_RAMP_COLORS else "",
+                many if len(ramp) == MOST_RAMP_COLORS else "",
                 run=lambda: self._give_ramp((*ramp[: lower + 1], between, *ramp[lower + 1 :]), lower + 1),
             ),
             Button(
                 "remove color",
                 f"Remove color {chosen + 1}, the chosen one, from the ramp.",
-                FEW if len(ramp) == 2 else "",
+                "a ramp has at least 2 colors; to have none, switch the ramp off" if len(ramp) == 2 else "",
                 run=lambda: self._give_ramp(ramp[:chosen] + ramp[chosen + 1 :], min(chosen, len(ramp) - 2)),
             ),
         ]
@@ -429,8 +422,6 @@ class MixingScreen(Screen):
         name = surface_of(studio, word)
         red, green, blue = studio.entries[word].tolist()
         return Sample(name, (red, green, blue), word - studio.level_ranges[name].first if name else 0)
-
-    # Actions.
 
     def _pick(self, crop: Crop, gesture: Gesture) -> None:
         element, line = gesture.element, gesture.line
