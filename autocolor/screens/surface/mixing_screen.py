@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from itertools import count
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -280,13 +281,14 @@ class MixingScreen(Screen):
         ]
 
     def _taking_row(self, thing: str) -> Button:
-        is_on = self._taking == thing
-        return Button(
-            f"take {thing}",
-            "Stop picking." if is_on else f"{self._prompt(thing)}.",
-            run=self._end_taking if is_on else partial(self._begin_taking, thing),
-            is_chosen=is_on,
-        )
+        is_on, prompt = self._taking == thing, self._prompt(thing)
+
+        def flip() -> None:
+            self._taking = "" if is_on else thing
+            if self._taking:
+                self.session.tell(prompt)
+
+        return Button(f"take {thing}", "Stop picking." if is_on else f"{prompt}.", run=flip, is_chosen=is_on)
 
     def _widgets(self, words: MixingWords) -> Sequence[Widget]:
         paint, levels = self._paint, self._levels
@@ -312,7 +314,17 @@ class MixingScreen(Screen):
                 most=levels - 1,
                 put=lambda level: change_paint(self.session, blend=blend_from(level, levels)),
             )
-        return [*self._section(True, words), bar, *self._section(False, words), *self._finishes()]
+        width = FINISHES_ROW.width // len(FINISHES)
+        finishes = [
+            Button(
+                name,
+                f"A click gives the surface this finish: {name}, in its object color.",
+                area=FINISHES_ROW._replace(left=left, right=left + width - 1),
+                run=partial(self._finish, name),
+            )
+            for name, left in zip(FINISHES, count(LEFT, width))
+        ]
+        return [*self._section(True, words), bar, *self._section(False, words), *finishes]
 
     def _section(self, is_upper: bool, words: MixingWords) -> list[Widget]:
         """The heading of a section with the number of its color, and its bars."""
@@ -353,19 +365,6 @@ class MixingScreen(Screen):
                     zip(tops, BARS, values, strict=True)
                 )
             ),
-        ]
-
-    def _finishes(self) -> list[Widget]:
-        width = FINISHES_ROW.width // len(FINISHES)
-        area = FINISHES_ROW._replace(right=LEFT + width - 1)
-        return [
-            Button(
-                name,
-                f"A click gives the surface this finish: {name}, in its object color.",
-                area=area._replace(left=area.left + number * width, right=area.right + number * width),
-                run=partial(self._finish, name),
-            )
-            for number, name in enumerate(FINISHES)
         ]
 
     def _items(self, words: MixingWords) -> Sequence[Item]:
@@ -443,10 +442,6 @@ class MixingScreen(Screen):
         else:
             self._take(sample.color)
         self._taking = ""
-
-    def _begin_taking(self, thing: str) -> None:
-        self._taking = thing
-        self.session.tell(self._prompt(thing))
 
     def _end_taking(self) -> bool:
         was_taking, self._taking = bool(self._taking), ""
