@@ -192,7 +192,7 @@ class Board:
         self.screens[wanted].enter()
         # Without a menu beside it, the screen itself must say what to do, and the way back.
         screen = self.screen
-        is_reached_by_menu = screen.word and screen.name != PICTURE
+        is_reached_by_menu = (screen.word or screen.shows_picture) and screen.name != PICTURE
         if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
             self.session.tell(f"{screen.help}; the right edge: the menu")
         return True
