@@ -33,7 +33,6 @@ from autocolor.widgets.items import (
     Area,
     Item,
     area_of,
-    between,
     clipped,
     joined,
     rounded,
@@ -267,7 +266,7 @@ def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Ve
     if along.min() <= 0:
         return joined(rim)
     ends = rim[[(across / along).argmin(), (across / along).argmax()]]
-    return between(np.stack([at, at]), ends)
+    return np.concatenate([[at, at], ends], axis=1)
 
 
 # The numerals beside the lights and their aims in the three views, at the places where they hide least. Aims
@@ -400,7 +399,8 @@ def point_items(
 def edge_items(views: OrthographicViews, side: ViewSide, view: View, target: Vector) -> Sequence[Item]:
     """The items of the picture's edges at the depth of the target, and of the rays to its corners."""
     corners = views.positions(side, picture_corners(view, target))
-    rays = between(np.broadcast_to(views.position(side, view.eye), (4, 2)), corners)
+    eyes = np.broadcast_to(views.position(side, view.eye), (4, 2))
+    rays = np.concatenate([eyes, corners], axis=1)
     return drawn_item([rays, joined([*corners, corners[0]])], SLATE, side)
 
 

@@ -61,6 +61,13 @@ def as_opened(session: Session) -> None:
     session.tell("the view as opened")
 
 
+def view_again(session: Session, back: bool) -> None:
+    """Return to the view before, or forward to the view that was left."""
+    studio = session.studio
+    if not (studio.view_back() if back else studio.view_forward()):
+        session.tell(f"there is no view {'before' if back else 'after'} this one")
+
+
 def see_from(session: Session, side: str) -> None:
     """Look at the object from a side of `sides_of`."""
     view = seen_from(session.scene, side)

@@ -124,6 +124,22 @@ def test_a_view_is_saved_taken_and_removed_as_a_camera(hand: Hand) -> None:
     assert [view.name for view in hand.scene.views] == ["view 1"]
 
 
+def test_a_camera_is_named_when_it_is_saved_and_renamed_from_its_list(hand: Hand) -> None:
+    hand.viewer.session.has_keyboard = True
+    hand.pick("save view", 0.25)
+    hand.type("hero")
+    hand.press("return")
+    assert [view.name for view in hand.scene.views] == ["hero"]
+    for number in range(3):
+        hand.viewer.session.edit(hand.scene.with_saved_view(f"view {number}"))
+    hand.open_menu()
+    hand.choose("camera", "hero")
+    hand.type("side")
+    hand.press("return")
+    assert [view.name for view in hand.scene.views] == ["side", "view 0", "view 1", "view 2"]
+    assert hand.message == "camera side"
+
+
 def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
     start = hand.scene
     hand.open_menu()
