@@ -678,11 +678,12 @@ AXE = Path(os.environ.get("AXE_CORE", "not set"))
 
 @pytest.mark.skipif(not AXE.is_file(), reason="AXE_CORE is not the path of axe.min.js of axe-core")
 @pytest.mark.parametrize("scheme", first(1, ["light", "dark"]))
-def test_the_accessibility_checker_finds_nothing(
-    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, scheme: str
-) -> None:
-    page = opened(coupe, small, context={"color_scheme": scheme, "bypass_csp": True}, variants=VARIANTS)
+def test_the_accessibility_checker_finds_nothing(opened: Open, coupe: autocolor.Scene, scheme: str) -> None:
+    context = {"color_scheme": scheme, "bypass_csp": True}
+    page = opened(coupe, None, "view=2", context, **TURNING, lights=True, variants=VARIANTS)
+    wait_for_view(page, "90°")
     page.get_by_role("button", name="Before").click()
+    page.locator("summary").click()
     page.evaluate(AXE.read_text("utf-8"))
     found = page.evaluate("async () => (await axe.run()).violations")
     assert [(each["id"], each["impact"], [node["html"] for node in each["nodes"]]) for each in found] == []
