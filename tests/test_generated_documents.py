@@ -116,13 +116,7 @@ def test_the_modules_and_tests_of_the_paper_are_there() -> None:
         pkgutil.resolve_name(name)
 
 
-def test_where_the_program_differs_from_the_paper_is_in_the_ledger() -> None:
-    departures = [line.text for line in fidelity.lines_of_packages() if line.kind == "Departs"]
-    for departure in ("the paper prints the test as cos(L) <= cos(A)", "linear in the picture"):
-        assert any(departure in text for text in departures)
-
-
-def test_a_mark_is_found_in_texts_constants_brackets_and_comments() -> None:
+def test_a_statement_ends_with_its_paragraph_or_at_the_next_mark() -> None:
     source = '''"""Module. Paper: Figure 1. Assumed: nothing
 more (at all).
 
@@ -134,20 +128,20 @@ NEAR = 1
 
 
 class Box:
-    """A box (Hardware: LIN, f(x)) of words."""
-
     def open(self) -> None:
         # Departs: it opens
-        # twice.
+        # twice, says J. Blinn. Then it closes.
         pass
 '''
-    assert [tuple(line) for line in fidelity.lines_of_source(source, "m")] == [
-        ("Paper", "m", "", "Figure 1."),
-        ("Assumed", "m", "", "nothing more (at all)."),
-        ("Assumed", "m", "NEAR", "near."),
-        ("Hardware", "m", "Box", "LIN, f(x)."),
-        ("Departs", "m", "", "it opens twice."),
+    assert [tuple(statement) for statement in fidelity.statements_of(source, "m.py")] == [
+        ("Paper", "m.py", 1, "Figure 1."),
+        ("Assumed", "m.py", 1, "nothing more (at all)."),
+        ("Assumed", "m.py", 8, "near."),
+        ("Departs", "m.py", 13, "it opens twice, says J. Blinn. Then it closes."),
     ]
+    assert fidelity.first_sentence("it opens twice, says J. Blinn. Then it closes.") == (
+        "It opens twice, says J. Blinn."
+    )
 
 
 def without_pixels(notebook: dict[str, Any]) -> dict[str, Any]:

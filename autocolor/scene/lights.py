@@ -58,8 +58,8 @@ Names = tuple[str, ...]
 class Flap(Row):
     """A range of one object coordinate outside of which a light has no effect, and a switch.
 
-    Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit. Departs: with an
-    edge width, the light rises from nothing at an end to full light at this distance inside.
+    Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit. With an edge
+    width, the light rises from nothing at an end to full light at this distance inside.
     """
 
     noun: ClassVar[str] = "flap"
@@ -188,8 +188,8 @@ class HalfSpace(Row):
 class Links(Row):
     """The surfaces and parts that a light shines on, by name; without names, it shines on everything.
 
-    Departs: the paper's lights shine on everything. A point is lit if the light shines on its surface and on
-    its part.
+    Departs: a light may shine on some surfaces and parts only; the paper's lights shine on everything. A
+    point is lit if the light shines on its surface and on its part.
     """
 
     noun: ClassVar[str] = "links"
