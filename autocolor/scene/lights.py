@@ -299,7 +299,7 @@ class Light(Row):
         at_least=0,
         bar=BarRange(0, 100, 1),
         tier=Tier.LIGHT,
-        help="C: the exponent of the cosine of the angle from the direction; exact to 1e-4 up to 100,000.",
+        help="C: the exponent of the cosine of the angle from the direction.",
     )
     cone_angle: float | None = number(
         default=None,
@@ -320,8 +320,7 @@ class Light(Row):
         bar=BarRange(0, 90, 1),
         start=0.0,
         tier=Tier.LIGHT,
-        help="The angle of full light inside the cone; if absent, the cone is sharp. Edges are exact to 1e-4"
-        " from 0.1 degrees on.",
+        help="The angle of full light inside the cone; if absent, the cone is sharp.",
     )
     flaps: Flaps = nested(
         Flaps, default=Flaps(), tier=Tier.LIGHT, help="The ranges of object coordinates that are lit."
@@ -346,7 +345,7 @@ class Light(Row):
     at_infinity: bool = boolean(
         default=False,
         tier=Tier.LIGHT,
-        help="Whether its rays are parallel, as if it were infinitely far away.",
+        help="Whether its rays are parallel, as from infinitely far.",
     )
     follows: str | None = column_of(
         Reference("lights", EYE),

@@ -172,7 +172,7 @@ class _PowerOfCosine(ReflectionModel):
         at_least=0,
         bar=BarRange(1, 200, 1),
         tier=Tier.LIGHT,
-        help="N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 100,000.",
+        help="N: the exponent, which makes the highlight narrower.",
     )
 
     growth: SpecularGrowth = nested(
@@ -250,7 +250,7 @@ class CookTorrance(ReflectionModel):
         at_most=1,
         bar=BarRange(0.01, 1, 0.01),
         tier=Tier.LIGHT,
-        help="The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.02.",
+        help="The roughness: m, the slope of the microfacets.",
     )
     normal_reflectance: float = number(
         default=0.05,

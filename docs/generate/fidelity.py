@@ -1,10 +1,10 @@
-"""The fidelity ledger: the paper section by section, where the program differs, and the instructions' sources.
+"""The fidelity ledger: the paper, where the program differs, and the sources of the instructions.
 
 Marks in docstrings and comments say where a formula or a number comes from. `Paper:` Warn's paper;
 `Hardware:` a source about the RAMTEK by its key; `Assumed:` our choice where sources are silent; `Departs:`
 where the program knowingly differs; `Limit:` a bound that no source asks for, such as the largest file that
 is read. `python -m docs.generate.fidelity > docs/FIDELITY.md` writes the document, with the departures.
-`python -m docs.generate.fidelity --assumed` lists the statements of another mark with their lines in the code.
+`python -m docs.generate.fidelity --assumed` lists the statements of a mark with their lines in the code.
 """
 
 from __future__ import annotations
@@ -127,6 +127,30 @@ THE_PAPER = (
 """A section or figure of the paper, the modules that are its subject, and the first of its tests."""
 
 
+HEAD = """# Fidelity
+
+Where the paper is built and tested, and where the program knowingly differs from it. The paper is D. R. Warn,
+"Lighting Controls for Synthetic Images", SIGGRAPH 1983.
+
+Where the paper and the sources about the hardware are silent, a note `Assumed:` in the code has our choice
+and its reason. This command lists the notes with their lines:
+
+```
+python -m docs.generate.fidelity --assumed
+```
+
+`--paper` and `--hardware` list what follows the paper and the sources about the hardware, and `--limit` our
+own bounds on files, sizes and times.
+
+## The paper, section by section
+
+The tests are in `tests/test_paper.py`, in the order of the paper.
+
+| section or figure | module | test |
+|---|---|---|
+"""
+
+
 class Statement(NamedTuple):
     """What follows a mark: its kind, the file and the line of the mark, and its text."""
 
@@ -162,16 +186,7 @@ def full_name(module: str) -> str:
 
 def document() -> str:
     """The ledger as a document."""
-    parts = [
-        "# Fidelity\n\nWhere the paper is built and tested, and where the program knowingly differs from it. The"
-        ' paper is D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983. Where the paper and the'
-        " sources of the hardware are silent, the code has a note `Assumed:` with the choice and its reason."
-        " This lists the notes with their lines:\n\n```\npython -m docs.generate.fidelity --assumed\n```\n\n"
-        "`--paper`, `--hardware` and `--limit` list what follows the paper, what follows a source of the"
-        " hardware, and bounds of our own on files, sizes and times.\n",
-        "\n## The paper, section by section\n\nThe tests are in `tests/test_paper.py`, in the order of the"
-        " paper.\n\n| section or figure | module | test |\n|---|---|---|\n",
-    ]
+    parts = [HEAD]
     for place, modules, test in THE_PAPER:
         listed = ", ".join(f"`{full_name(module)}`" for module in modules)
         parts.append(f"| {place} | {listed} | `{test}` |\n")
