@@ -60,10 +60,9 @@ def save_layers(
     has no depths and no normals, so its visible points and its lights are computed again. The file has the
     lines and elements of the picture: with `smooth`, more than its image.
 
-    Raises UsageError for a name that does not end in .exr; UnavailableError without the package OpenEXR;
-    InputError if the picture is not the scene's, or if the layers need more memory than the budget allows;
-    OutputError if the file exists and `overwrite` is false, or if it cannot be created; WriteError if writing
-    fails.
+    Raises UsageError for a name that does not end in .exr, UnavailableError without the package OpenEXR,
+    InputError if the picture is not the scene's or the layers exceed the memory budget, and OutputError or
+    WriteError if the file cannot be written.
     """
     check_surfaces(scene, picture)
     check_suffix(path, ".exr", "layers")
