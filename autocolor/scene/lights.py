@@ -345,7 +345,7 @@ class Light(Row):
     at_infinity: bool = boolean(
         default=False,
         tier=Tier.LIGHT,
-        help="Whether its rays are parallel, as from infinitely far.",
+        help="Whether its rays are parallel.",
     )
     follows: str | None = column_of(
         Reference("lights", EYE),

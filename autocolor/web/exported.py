@@ -27,6 +27,11 @@ The level is how many of the surface's thresholds in `levels` are at most the in
 first + band x shades + level, where the band is known from the exported word. With `dither`, each level has
 64 steps: the level is floor((steps + k) / 64), where `steps` counts thresholds and k, 0 to 63, is the rank of
 the pixel in the tile of `intensity.ordered_thresholds`.
+
+Measured: the words of the coupe take 31.4 kB at 640 x 480 and 73.7 kB with smooth=2, the planes of its four
+lights 239 and 642 kB. Measured and rejected for the words: differences of 16 bits, 36.7 and 88.5 kB; the
+predictors of PNG (Paeth) and of JPEG-LS, 79 kB with smooth=2; the word above as a second predictor, 72.3 kB
+for twice the code in the browser.
 """
 
 from __future__ import annotations

@@ -92,9 +92,12 @@ SHORT = (
     (r"two finite numbers, the second above the first", "two rising numbers"),
     (
         r"'auto', a percentage .*",
-        "'auto', a percentage from '50 %' on, or ranges such as { object = [0.0, 1.3] }",
+        "'auto', '50 %' to '100 %', or ranges such as { object = [0.0, 1.3] }",
     ),
-    (r"2 to 91 points .*", "2 to 91 points, from 0 to 90 degrees and from 0.001 to 1"),
+    (
+        r"2 to 91 points .*",
+        "2 to 91 points: angles rise from 0 to 90, shares are 0 to 1, the first from 0.001",
+    ),
     (r"the name of a color scale, or a list of", "a name, or"),
     (r"a table of ", ""),
 )
