@@ -127,7 +127,7 @@ def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
     yield f"{text} Edits: *{usual.name.lower()}*\n".lstrip()
     for key, (column, field) in columns.items():
         given = ", ".join(filter(None, (value_of(column), default(cls, key, field))))
-        cost = "" if column.tier == usual else f" *{column.tier.name.lower()}*"
+        cost = "" if column.tier == usual else f" (*{column.tier.name.lower()}*)"
         of = going_with(fields_of(cls)[field].kind, key)
         yield f"**`{key}`**{of}: {given}. {column.help}{cost}\n"
 
