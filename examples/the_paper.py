@@ -180,13 +180,12 @@ pyramid = pyramid.with_surface("pyramid", diffuse=0.9, specular=0.2, object_colo
 pyramid = pyramid.with_surface("plane", exponent=40, object_color="#5878b8")
 
 
-def with_concentration(C: int) -> Image.Image:
+@ipywidgets.interact(C=(0, 60))
+def with_concentration(C: int = 1) -> Image.Image:
     """The picture of the pyramid with a concentration of its light."""
     scene = pyramid.with_light("lamp", concentration=C)
-    return Image.fromarray(autocolor.image(scene, size=(400, 300))).quantize(128)
+    return Image.fromarray(autocolor.image(scene, size=(480, 360)))
 
-
-ipywidgets.interactive(with_concentration, C=(0, 60))
 
 # %% [markdown]
 # **Task 4.** At which angle L is half of the light left, for C = 1, 10 and 40?

@@ -66,11 +66,15 @@ def outputs_of(code: str, names: dict[str, Any]) -> list[dict[str, Any]]:
         if isinstance(last, ast.Expr):
             value = eval(compile(ast.Expression(last.value), SCRIPT.name, "eval"), names)
     outputs: list[dict[str, Any]] = []
-    # Outside of a notebook, ipywidgets clears the line instead of the output.
-    if text := printed.getvalue().replace("\x1b[2K\r", ""):
+    defined = (
+        names[statements[-1].name] if statements and isinstance(statements[-1], ast.FunctionDef) else None
+    )
+    if hasattr(defined, "widget"):
+        # A function with a slider shows its result. Outside of a notebook, ipywidgets prints a description.
+        value = defined.widget.result
+    elif text := printed.getvalue():
         outputs.append({"output_type": "stream", "name": "stdout", "text": lines_of(text)})
-    # A widget of ipywidgets shows its last result.
-    value, picture = getattr(value, "result", value), None
+    picture = None
     if hasattr(value, "_repr_png_"):
         picture = b64encode(value._repr_png_()).decode("ascii")
     elif hasattr(value, "_repr_mimebundle_"):
