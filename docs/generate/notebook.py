@@ -66,12 +66,11 @@ def outputs_of(code: str, names: dict[str, Any]) -> list[dict[str, Any]]:
         if isinstance(last, ast.Expr):
             value = eval(compile(ast.Expression(last.value), SCRIPT.name, "eval"), names)
     outputs: list[dict[str, Any]] = []
-    defined = (
-        names[statements[-1].name] if statements and isinstance(statements[-1], ast.FunctionDef) else None
-    )
-    if hasattr(defined, "widget"):
+    end = statements[-1] if statements else None
+    slider = getattr(names[end.name], "widget", None) if isinstance(end, ast.FunctionDef) else None
+    if slider is not None:
         # A function with a slider shows its result. Outside of a notebook, ipywidgets prints a description.
-        value = defined.widget.result
+        value = slider.result
     elif text := printed.getvalue():
         outputs.append({"output_type": "stream", "name": "stdout", "text": lines_of(text)})
     picture = None
