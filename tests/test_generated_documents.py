@@ -145,6 +145,7 @@ def without_pixels(notebook: dict[str, Any]) -> dict[str, Any]:
     return notebook
 
 
+@pytest.mark.needs("anywidget")
 def test_the_notebook_is_up_to_date_and_every_number_in_it_is_true() -> None:
     """The script also asserts that its numbers by hand equal those of the program."""
     made = without_pixels(json.loads(json.dumps(notebook())))
@@ -156,10 +157,13 @@ def test_the_notebook_is_up_to_date_and_every_number_in_it_is_true() -> None:
 
 
 def test_a_script_is_divided_into_cells_and_texts_and_shows_the_picture_of_a_last_line() -> None:
-    text, code = "# %% [markdown]\n# # Title\n#\n# A text.\n\n", "# %%\nx = 1  # %% one\n\n# Of x.\nx\n"
+    text, code = (
+        "# %% [markdown]\n# # Title\n#\n# A text.\n\n",
+        '# %% a={"b": 1}\nx = 1  # %% one\n\n# Of x.\nx\n',
+    )
     assert cells_of(f'"""Not a cell."""\n\n{text}{code}') == [
         Cell(MARKDOWN, "# Title\n\nA text."),
-        Cell(CODE, "x = 1  # %% one\n\n# Of x.\nx"),
+        Cell(CODE, "x = 1  # %% one\n\n# Of x.\nx", {"a": {"b": 1}}),
     ]
 
     class Shown:
