@@ -51,8 +51,9 @@ MOVED = """async ([label, rounds]) => {
         await new Promise(requestAnimationFrame);
         if (!label) {
             const status = document.querySelector("[role=status]");
+            const shown = new Promise(resolve =>
+                new MutationObserver(resolve).observe(status, {childList: true}));
             const begun = performance.now();
-            const shown = new Promise(resolve => new MutationObserver(resolve).observe(status, {childList: true}));
             document.querySelector("[aria-label='Turn right']").click();
             await shown;
             seconds.push((performance.now() - begun) / 1000);
