@@ -24,8 +24,7 @@
  * @typedef {{held: string, exposure: string, ambient: number, rows: LightRow[], levels: string[],
  *   dither: boolean}} Lights
  */
-/** @typedef {{name: string, paints?: Record<string, Partial<Paint>>,
- *   lights?: Record<string, Record<string, Value>>}} Variant */
+/** @typedef {{name: string, values: State}} Variant */
 /** @typedef {string | ArrayBufferView} Packed  Bytes, or their base64. */
 /** @typedef {{format: string, name: string, lines: number, elements: number, smooth: number, words: Packed,
  *   entries: Packed, background: string, surfaces: Surface[], notes: string[], variants: Variant[],
@@ -406,19 +405,6 @@ export function paintOf(state, name) {
   return /** @type {Paint} */ (
     Object.fromEntries(PAINT.map((field) => [field, state[`surfaces.${name}.${field}`]]))
   );
-}
-
-/** The values of a variant. @param {State} first @param {Variant} variant @returns {State} */
-function stateOfVariant(first, variant) {
-  const state = { ...first };
-  for (const [table, rows] of [["surfaces", variant.paints], ["lights", variant.lights]]) {
-    for (const [name, fields] of Object.entries(rows ?? {})) {
-      for (const [field, value] of Object.entries(fields)) {
-        if (`${table}.${name}.${field}` in state) state[`${table}.${name}.${field}`] = value;
-      }
-    }
-  }
-  return state;
 }
 
 /** Whether two values are equal. @param {Value} one @param {Value} other */
@@ -1523,8 +1509,8 @@ function variantStrip(desk, relight, words) {
       draw.get(target)();
     }
   });
-  const buttons = [{ name: "As exported" }, ...picture.variants].map((variant) => {
-    const state = stateOfVariant(first, variant);
+  const buttons = [{ name: "As exported", values: {} }, ...picture.variants].map(({ name, values }) => {
+    const state = { ...first, ...values };
     const canvas = make("canvas");
     draw.set(canvas, () => {
       const light = lightIn(differing(state, desk.state));
@@ -1533,12 +1519,8 @@ function variantStrip(desk, relight, words) {
       if (light) relight?.(desk.state, light);
     });
     observer.observe(canvas);
-    const button = make(
-      "button",
-      { onclick: () => desk.edit(changesTo(desk, state)) },
-      canvas,
-      make("span", {}, variant.name),
-    );
+    const onclick = () => desk.edit(changesTo(desk, state));
+    const button = make("button", { onclick }, canvas, make("span", {}, name));
     desk.syncs.push(() => (button.ariaPressed = String(alike(state, desk.state))));
     return button;
   });

@@ -15,7 +15,7 @@ browser averages them. The keys of an export:
 - `swatches`: colors by name;
 - `legend`: None, or `line`, `element`, `lines`, `elements` and packed `words` to draw over the words;
 - `notes`: sentences about the picture;
-- `variants`: the `name` of each, its changed `paints` by surface and its changed `lights` by light;
+- `variants`: the `name` of each, and the `values` that it changes, by key;
 - `lights`: None, or what `_light_values` exports.
 
 All bytes are base64. Words and planes are compressed twice: as differences between neighbors, which are
@@ -458,30 +458,30 @@ def _variant_values(
             f"a page must have at most {MOST_VARIANTS_SHOWN:,} variants, not {len(rows):,}; leave some out"
         )
     check_variants(image.scene, rows, lights)
-    surfaces = {surface["name"]: surface for surface in values["surfaces"]}
+    editable = [surface["name"] for surface in values["surfaces"] if not surface["fixed"]]
+    before = _state(image.scene, editable)
     exported = []
     for variant in rows:
         try:
-            scene = scene_with(image.scene, variant.settings)
+            state = _state(scene_with(image.scene, variant.settings), editable)
         except InputError as error:
             raise InputError(
                 f"variant {shown(variant.name)}: {problem}" for problem in error.problems
             ) from None
-        changes = {
-            name: _changes(surface["paint"], paint_values(scene.surfaces[name].paint))
-            for name, surface in surfaces.items()
-            if not surface["fixed"]
-        }
-        pairs = zip(light_rows(image.scene), light_rows(scene), strict=True)
-        light_changes = {old["name"]: _changes(old, new, ("on", "intensity")) for old, new in pairs}
-        exported.append(
-            {
-                "name": variant.name,
-                "paints": {name: change for name, change in changes.items() if change},
-                "lights": {name: change for name, change in light_changes.items() if change},
-            }
-        )
+        changes = {key: value for key, value in state.items() if value != before[key]}
+        exported.append({"name": variant.name, "values": changes})
     return exported
+
+
+def _state(scene: Scene, editable: Sequence[str]) -> dict[str, Any]:
+    """The values that a browser can change, by key: of the paints of some surfaces, and of all lights."""
+    paints = {name: paint_values(scene.surfaces[name].paint) for name in editable}
+    state = {
+        f"surfaces.{name}.{key}": value for name, paint in paints.items() for key, value in paint.items()
+    }
+    for row in light_rows(scene):
+        state |= {f"lights.{row['name']}.{key}": row[key] for key in ("on", "intensity")}
+    return state
 
 
 def check_variants(scene: Scene, variants: Sequence[Variant], lights: bool) -> None:
@@ -507,8 +507,3 @@ def check_variants(scene: Scene, variants: Sequence[Variant], lights: bool) -> N
             else:
                 continue
             raise UsageError(f"variant {shown(variant.name)}: {brief(key)}: {problem}")
-
-
-def _changes(old: Mapping[str, Any], new: Mapping[str, Any], keys: Sequence[str] = ()) -> dict[str, Any]:
-    """The new values that differ, of some keys or of all."""
-    return {key: new[key] for key in keys or new if new[key] != old[key]}

@@ -66,8 +66,11 @@ def test_a_page_has_lights_and_variants(saved: Path, run: Run) -> None:
     ]  # fmt: skip
     assert values["variants"][3] == {
         "name": "evening-1",
-        "paints": {"side": {"object_color": "#000080", "blend": 1.0}},
-        "lights": {"key": {"intensity": 0.5}},
+        "values": {
+            "surfaces.side.object_color": "#000080",
+            "surfaces.side.blend": 1.0,
+            "lights.key.intensity": 0.5,
+        },
     }
 
 

@@ -298,18 +298,20 @@ def test_a_variant_has_the_fields_of_paints_and_lights_that_it_changes() -> None
         {"name": "saved", "lights.key.on": "false", "exposure": '{ "object" = [0.0, 1.0] }'},
     ]
     assert values_through_json(scene, variants=rows, lights=True)["variants"] == [
-        {"name": "night", "paints": {"body": {"object_color": "#000080"}}, "lights": {"key": {"on": False}}},
+        {"name": "night", "values": {"surfaces.body.object_color": "#000080", "lights.key.on": False}},
         {
             "name": "1,2,3-0.4",
-            "paints": {"glass": {"object_color": "#010203", "ramp": None}},
-            "lights": {},
+            "values": {"surfaces.glass.object_color": "#010203", "surfaces.glass.ramp": None},
         },
         {
             "name": "2-none-0.25",
-            "paints": {"body": {"blend": 0.25}, "glass": {"ramp": None}},
-            "lights": {"fill": {"intensity": 2.0}},
+            "values": {
+                "surfaces.body.blend": 0.25,
+                "surfaces.glass.ramp": None,
+                "lights.fill.intensity": 2.0,
+            },
         },
-        {"name": "saved", "paints": {}, "lights": {"key": {"on": False}}},
+        {"name": "saved", "values": {"lights.key.on": False}},
     ]
 
 
