@@ -27,7 +27,8 @@ Examples:
 @option(
     "--views",
     "N|cameras",
-    "Let the page turn: N pictures from all around the object, 2 to 64, or one from each named view.",
+    "Let the page turn: N views from all around the object, 2 to 64; or cameras, the scene's view and its"
+    " named views.",
     str,
 )
 @flag("--lights", "Let the page change the lights: their strengths, and which are on.")
@@ -38,7 +39,6 @@ Examples:
     "URL",
     "Address that the page will have, so that other sites show its picture; a PNG is written beside it.",
     str,
-    default="",
 )
 @option("-o --output", "HTML", "Page to write. Default: SCENE.html.")
 @force_option
@@ -48,16 +48,17 @@ def page(
     lights: bool,
     varies: tuple[str, ...],
     table: str | None,
-    link: str,
+    link: str | None,
     output: str | None,
     force: bool,
 ) -> int:
     """Write a page of SCENE that anyone can recolor: one HTML file, for any browser, without a network.
 
     SCENE may be a picture file, which needs no rendering. The page holds the words of the picture and the
-    paints, but no mesh; with --lights, also the light of each lamp at each pixel. With --views, drag the
-    picture to turn it: the first view sets levels and exposure, and has the lights. Variants are shown as a
-    strip. They may only change paints, and `on` and `intensity` of lights if the page has --lights.
+    paints, but no mesh; with --lights, also the light of each lamp at each pixel. With --views, visitors drag
+    the picture to turn it. All views have the levels and the exposure of the first, and lights can be changed
+    in the first only. Variants are shown as a strip. They may only change paints, and `on` and `intensity` of
+    lights if the page has --lights.
     """
     from autocolor.batches.table import products
     from autocolor.files.paths import file_stem
@@ -69,6 +70,7 @@ def page(
     if output is None:
         output = f"{file_stem(Path(source.path).stem)}.html"
     check_suffix(output, ".html", "a page")
+    link = link or ""
     check_link(link)
     written = [output, *[str(Path(output).with_suffix(".png"))] * bool(link)]
     for path in written:

@@ -17,7 +17,7 @@ from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final
-from urllib.parse import quote, urljoin, urlsplit
+from urllib.parse import quote, urljoin
 
 from autocolor.arrays import Bytes
 from autocolor.batches.table import Rows
@@ -26,7 +26,7 @@ from autocolor.errors import UsageError
 from autocolor.files.writing import check_suffix, refuse_output, write_atomically
 from autocolor.images import default_smooth, image, save_image
 from autocolor.lighting.picture import Picture, check_surfaces
-from autocolor.rendering import SIZE, render
+from autocolor.rendering import SIZE, checked_size, render
 from autocolor.scene.scene import Scene, check_scene
 from autocolor.scene.view import NamedView
 from autocolor.web.exported import LARGEST_CANVAS, check_canvas, export_of
@@ -97,14 +97,14 @@ def save_page(
     Without a `picture` the scene is rendered, with `size` and `smooth` as in `save_image`. The page has the
     samples of a smooth picture, and its browser averages them.
 
-    With `views` the page turns. A number, 2 to 64, asks for eyes all around the object, which always fits
-    into the picture; "cameras" for the scene's view and its named views. All have the levels and the exposure
-    of the first. With `lights` the lights of the first view can be changed.
+    With `views`, visitors can turn the picture. A number from 2 to 64 is the number of views from all around
+    the object; "cameras" stands for the scene's view and its named views. All views have the levels and the
+    exposure of the first view. With `lights`, the lights of the first view can be changed.
 
     `variants` are a list of `Variant`s, or of tables of values by key, which change paints alone: the page
     shows them as a strip. Scalar colors, a legend, and words that stand for normals are shown but cannot be
-    edited. With the address of the page as `link`, other sites show the picture beside it: a PNG of the
-    page's name is written, too. `progress` is called with the name of each view that is rendered.
+    edited. `link` is the address that the page will have: then a PNG with the name of the page is written
+    beside it, which other sites show. `progress` is called with the name of each view that is rendered.
 
     Raises UsageError for a name that does not end in .html, for a size or views beside a picture, for other
     views and links, and for variants that change anything else; InputError if the surfaces of the picture are
@@ -127,7 +127,7 @@ def save_page(
         refuse_output(output, overwrite=overwrite)
     rows: tuple[NamedView, ...] = ()
     if picture is None:
-        width, height = size = SIZE if size is None else size
+        width, height = size = checked_size(SIZE if size is None else size, 1 if smooth is None else smooth)
         if smooth is None:
             smooth = default_smooth(size)
             smooth = smooth if width * height * smooth**2 <= LARGEST_CANVAS else 1
@@ -144,9 +144,12 @@ def save_page(
     write_atomically(path, page.encode(), overwrite=overwrite)
 
 
+ADDRESS: Final = re.compile(r"https?://[\w.-]+(:\d+)?([/?#]\S*)?", re.ASCII)
+
+
 def check_link(link: str) -> None:
     """Raise UsageError unless a link is the address of a page, or empty."""
-    if link and (urlsplit(link).scheme not in ("http", "https") or not urlsplit(link).netloc):
+    if link != "" and not (isinstance(link, str) and link.isprintable() and ADDRESS.fullmatch(link)):
         raise UsageError(
             "a link must be the address of the page, such as https://example.com/coupe.html, not"
             f" {shown(link)}; give it whole"

@@ -197,10 +197,18 @@ def test_a_page_shows_a_small_image_before_its_script_runs(tmp_path: Path) -> No
     assert (attributes["width"], attributes["height"]) == ("1300", "650")
 
 
-@pytest.mark.parametrize("link", ["coupe.html", "ftp://example.com/a.html", "javascript:alert(1)", "https:"])
-def test_a_link_that_is_no_address_is_refused(tmp_path: Path, link: str) -> None:
-    with pytest.raises(UsageError, match="a link must be the address of the page, such as https://"):
-        save_page(tmp_path / "car.html", car(), size=SIZE, link=link)
+@pytest.mark.parametrize(
+    "options",
+    [
+        *({"link": link} for link in ("coupe.html", "ftp://a.com/a.html", "javascript:alert(1)", "https:")),
+        *({"link": link} for link in ("https://[", "https://a.com/a b", "https://a.com/\ud800", 5, None)),
+        *({"size": size} for size in ((0, 1), 5, (32, "24"))),
+        {"smooth": 0},
+    ],
+)
+def test_an_option_that_is_wrong_is_refused(tmp_path: Path, options: dict[str, Any]) -> None:
+    with pytest.raises(UsageError, match=r"^(a link must be the address of the page|a size must|smooth must)"):
+        save_page(tmp_path / "car.html", car(), **{"size": SIZE, **options})
     assert not [*tmp_path.iterdir()]
 
 
