@@ -1115,7 +1115,8 @@ function square(label, path, onclick, more) {
 
 /** The name of the picture, and what a paint changes. @param {Desk} desk */
 function title(desk) {
-  const { name, line = "", link } = desk.picture;
+  const { line = "", link } = desk.picture;
+  const name = desk.picture.name || "autocolor";
   const home = link && make("a", { href: link, target: "_blank", rel: "noopener" }, name);
   const text = make("p");
   desk.syncs.push(() => {

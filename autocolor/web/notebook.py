@@ -35,7 +35,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from autocolor.checks import is_whole, shown
-from autocolor.errors import AutocolorError, UnavailableError, UsageError
+from autocolor.errors import AutocolorError, InputError, UnavailableError, UsageError
 from autocolor.files.settings import scene_with
 from autocolor.images import display_image
 from autocolor.journal.history import History
@@ -101,8 +101,8 @@ class Widgets:
     def __init__(self, studio: EditedStudio, lines: int, elements: int) -> None:
         # A strong reference would be a circle, and a studio that is dropped would stay in memory.
         self._studio: EditedStudio = weakref.proxy(studio)
+        self._size = lines, elements
         self._smooth = SMOOTH if SMOOTH**2 * lines * elements <= MOST_SAMPLES else 1
-        self._samples = self._smooth * lines, self._smooth * elements
         self._widgets: list[AnyWidget] = []
         self._rendering: Rendering | None = None
         self._image: DisplayImage | None = None
@@ -142,8 +142,14 @@ class Widgets:
     def _update_traits(self) -> None:
         """Make the traits that show the present scene of the studio."""
         scene, history, before = self._studio.scene, self._studio.history, self._image
-        self._rendering = rendering(scene, *self._samples, self._rendering)
-        self._image = image = display_image(scene, self._rendering.picture, before)
+        try:
+            image = self._render(scene)
+        except InputError:
+            if self._smooth == 1:
+                raise
+            # The display shows the scene, but a sample between its pixels is too bright.
+            self._smooth = 1
+            image = self._render(scene)
         self._traits["picture"] = {
             **values_of(image),
             "smooth": self._smooth,
@@ -155,6 +161,13 @@ class Widgets:
         if before is None or image.words is not before.words:
             self._traits["words"] = packed_words(image.words, PACKING)
         self._traits["entries"] = image.entries.tobytes()
+
+    def _render(self, scene: Scene) -> DisplayImage:
+        """The image of a scene at the present samples, which is kept. Raises InputError."""
+        size = (self._smooth * length for length in self._size)
+        self._rendering = rendering(scene, *size, self._rendering)
+        self._image = display_image(scene, self._rendering.picture, self._image)
+        return self._image
 
     def _remove_closed(self) -> None:
         """Forget closed widgets, and their image after the last."""

@@ -29,7 +29,7 @@ from autocolor.lighting.picture import Picture, check_surfaces
 from autocolor.rendering import SIZE, checked_size, render
 from autocolor.scene.scene import Scene, check_scene
 from autocolor.scene.view import NamedView
-from autocolor.web.exported import LARGEST_CANVAS, check_canvas, export_of
+from autocolor.web.exported import LARGEST_CANVAS, MOST_VIEW_PIXELS, check_canvas, export_of
 from autocolor.web.views import views_of
 
 PAGE: Final = """\
@@ -128,11 +128,13 @@ def save_page(
     rows: tuple[NamedView, ...] = ()
     if picture is None:
         width, height = size = checked_size(SIZE if size is None else size, 1 if smooth is None else smooth)
+        rows = views_of(scene, views, width / height)
         if smooth is None:
             smooth = default_smooth(size)
-            smooth = smooth if width * height * smooth**2 <= LARGEST_CANVAS else 1
-        check_canvas(width * smooth, height * smooth)
-        rows = views_of(scene, views, width / height)
+            samples = width * height * smooth**2
+            is_small = samples <= LARGEST_CANVAS and len(rows) * samples <= MOST_VIEW_PIXELS
+            smooth = smooth if is_small else 1
+        check_canvas(width * smooth, height * smooth, len(rows))
         scene = scene.replace(view=rows[0].view)
         picture = render(scene, size, smooth=smooth)
         if progress is not None:

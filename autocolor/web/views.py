@@ -28,19 +28,21 @@ def views_of(scene: Scene, views: int | str | None, aspect: float) -> tuple[Name
     """The views of a page, the first of which is shown first.
 
     For a number they are `orbit.around` the object, named by their angle from the first; for CAMERAS, the
-    view and the named views of the scene; for None, the view alone. `aspect` is the width of the picture over
-    its height. Raises UsageError for other values, and if a scene for CAMERAS has no named view.
+    view of the scene and its other named views; for None, the view alone. `aspect` is the width of the
+    picture over its height. Raises UsageError for other values, and if a scene for CAMERAS has no other view.
     """
     own = NamedView("view", scene.view)
     if views is None:
         return (own,)
     if views == CAMERAS:
-        if not scene.views:
+        first = next((row for row in scene.views if row.view == scene.view), own)
+        others = [row for row in scene.views if row.view != scene.view]
+        if not others:
             raise UsageError(
-                "a scene for views from its cameras must have a named view, not none; save one in the studio,"
-                " or give a number of views"
+                "a scene for views from its cameras must have a named view besides its view, not none; save"
+                " one in the studio, or give a number of views"
             )
-        return (*scene.views,) if scene.view in [row.view for row in scene.views] else (own, *scene.views)
+        return first, *others
     if not is_whole(views, 2, MOST_VIEWS):
         raise UsageError(
             f"the views of a page must be a whole number from 2 to {MOST_VIEWS}, or {CAMERAS!r}, not"

@@ -6,6 +6,7 @@ import base64
 import copy
 import dataclasses
 import itertools
+import math
 import pickle
 import re
 import sys
@@ -19,7 +20,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autocolor import Scene, Studio, Surface, UnavailableError, render, scene_of
+from autocolor import Light, Mesh, Scene, Studio, Surface, UnavailableError, render, scene_of
 from autocolor.arrays import AnyArray, Words
 from autocolor.files.settings import scene_with
 from autocolor.images import display_image
@@ -28,7 +29,7 @@ from autocolor.testing import colors
 from autocolor.web import notebook
 from ramtek_emu import Configuration, PortError, Ramtek9300
 from tests.autocolor.web.twin import unpacked_words
-from tests.small import SMALL, boxes, car, cube, opened
+from tests.small import SMALL, boxes, car, cube, grid, opened, wall, wall_scene
 
 pytestmark = pytest.mark.needs("anywidget")
 
@@ -293,6 +294,27 @@ def test_a_studio_whose_display_is_lost_answers_and_keeps_its_scene() -> None:
     assert cell.say({"edit": {OBJECT_COLOR: "#102030"}}) == "the display left"
     assert studio.scene is before
     assert np.array_equal(cell.field, field)
+
+
+def test_a_scene_that_is_too_bright_between_the_pixels_of_the_display_is_shown_without_samples() -> None:
+    pixel = 8 * math.tan(math.radians(12.5)) / SMALL.lines
+    sliver = grid(1, 1, (3.2 * pixel, -0.001, -0.5), (0.1 * pixel, 0.0, 0.0), (0.0, 0.0, 1.0), "sliver")
+    mesh = Mesh(
+        np.concatenate([wall().coordinates, sliver.coordinates]),
+        np.concatenate([wall().node_numbers, sliver.node_numbers + 4]),
+        np.arange(2),
+        ("wall", "sliver"),
+    )
+    lights = [Light(name, position=(0.0, -3.0, 0.0)) for name in ("key", "fill")]
+    studio, _ = opened(wall_scene(mesh, lights=lights))
+    studio.light("fill", links={"only_surfaces": ["sliver"]})
+    _, cell = shown_in(studio)
+    assert np.array_equal(cell.field, seen(studio))
+    assert cell.say({"edit": {"lights.fill.intensity": 3e38}}) == ""
+    assert studio.scene.lights["fill"].intensity == 3e38
+    assert np.array_equal(cell.field, seen(studio, smooth=1))
+    studio.recolor("wall", object_color="#102030")
+    assert np.array_equal(cell.field, seen(studio, smooth=1))
 
 
 def test_every_step_of_the_studio_shows_in_all_widgets(tmp_path: Path) -> None:

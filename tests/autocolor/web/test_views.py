@@ -111,7 +111,7 @@ def test_the_cameras_are_the_view_and_the_named_views() -> None:
     scene = car().replace(views=[NamedView("beside", BESIDE), NamedView("below", BELOW)])
     assert [each.name for each in views_of(scene, "cameras", 1)] == ["view", "beside", "below"]
     taken = scene.with_taken_view("below")
-    assert [each.name for each in views_of(taken, "cameras", 1)] == ["beside", "below"]
+    assert [each.name for each in views_of(taken, "cameras", 1)] == ["below", "beside"]
     check_views(scene, views_of(scene, "cameras", 1), turning(scene, views_of(scene, "cameras", 1)))
 
 
@@ -159,6 +159,10 @@ def page(scene: Scene, views: Any) -> None:
 
 LOW = [NamedView("low", BELOW)]
 COUNTS = "the views of a page must be a whole number from 2 to 64, or 'cameras', not {}; give another number"
+ONE_CAMERA = (
+    "a scene for views from its cameras must have a named view besides its view, not none; save one in the"
+    " studio, or give a number of views"
+)
 test_views_that_are_refused = refused(
     call,
     [
@@ -166,8 +170,11 @@ test_views_that_are_refused = refused(
         (lambda: page(car(), "all"), COUNTS.format("'all'")),
         (
             lambda: page(car(), "cameras"),
-            "a scene for views from its cameras must have a named view, not none; save one in the studio, or"
-            " give a number of views",
+            ONE_CAMERA,
+        ),
+        (
+            lambda: page(car().with_saved_view("own"), "cameras"),
+            ONE_CAMERA,
         ),
         (
             lambda: page(car().replace(stage="floor", views=LOW), "cameras"),
@@ -206,3 +213,14 @@ def test_more_pixels_than_a_browser_holds_are_refused(
     save_page(tmp_path / "car.html", car(), size=SIZE, smooth=1, views=3)
     with pytest.raises(InputError, match="the views of a page must have at most 2,304 pixels together"):
         save_page(tmp_path / "more.html", car(), size=SIZE, smooth=1, views=4)
+
+
+def test_so_many_views_that_samples_are_too_many_have_none(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for module in ("exported", "page"):
+        monkeypatch.setattr(f"autocolor.web.{module}.MOST_VIEW_PIXELS", 12 * SIZE[0] * SIZE[1])
+    for count, smooth in ((3, 2), (4, 1), (12, 1)):
+        path = tmp_path / f"{count}.html"
+        save_page(path, car(), size=SIZE, views=count)
+        assert f'"smooth":{smooth},' in path.read_text("utf-8")
