@@ -86,9 +86,11 @@ def page(
         raise UsageError(
             "--views, --size and --smooth are for a scene, not for a picture file; give the scene"
         )
-    number = int(views) if views is not None and views.isdecimal() else views
+    # Python does not convert thousands of digits.
+    number = int(views) if views is not None and views.isdecimal() and len(views) < 10 else views
     picture = start.picture if isinstance(start, tuple) else None
-    with progress(1 + len(views_of(scene, number, 1))) as bar:
+    renderings = 0 if picture is not None else len(views_of(scene, number, 1))
+    with progress(1 + renderings) as bar:
         save_page(
             output,
             scene,

@@ -505,7 +505,7 @@ export function stateOfFragment(fragment, picture, first) {
     const row = picture.lights?.rows.find((each) => key === `lights.${each.name}.intensity`);
     const value = isKey ? valueOf(key, text, row?.most ?? 0) : undefined;
     if (value === undefined) {
-      const what = isKey
+      const what = isKey || (key === "view" && picture.views.length > 0)
         ? `${key} cannot be “${text.slice(0, 40)}”`
         : `it has no “${(key || pair).slice(0, 40)}”`;
       return `The link does not fit this picture: ${what}. Nothing was changed.`;

@@ -74,6 +74,11 @@ def test_a_page_has_lights_and_variants(saved: Path, run: Run) -> None:
     }
 
 
+def test_views_of_any_number_of_digits_are_refused(folder: Path, refused: Refused) -> None:
+    for digits in (3, 5000):
+        refused(f"page scene --views {'9' * digits}", 2)
+
+
 def test_a_page_turns_and_has_an_image_beside_it(folder: Path, run: Run) -> None:
     address = "https://example.com/scene.html"
     written = "wrote scene.html\nwrote scene.png\n"

@@ -477,6 +477,15 @@ def test_links_are_short_whatever_names_surfaces_and_lights_have(module: Page) -
                 [state, first, link, picture],
             )
             assert found == [f"view=2&{fragment}", {"state": state, "view": 0}]
+    wrong = module.evaluate("(values) => autocolor.stateOfFragment('view=9', ...values)", [picture, first])
+    assert "view cannot be “9”" in wrong
+
+
+def test_a_page_of_a_scene_without_a_name_has_a_heading(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    page = opened(coupe.replace(name=""), small)
+    assert page.get_by_role("heading", level=1).inner_text() == "autocolor"
 
 
 # A page that turns.
