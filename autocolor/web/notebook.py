@@ -80,6 +80,10 @@ class EditedStudio(Protocol):
         """The current scene."""
 
     @property
+    def display_image(self) -> DisplayImage:
+        """The image on the display."""
+
+    @property
     def history(self) -> History:
         """The steps of the session."""
 
@@ -163,10 +167,16 @@ class Widgets:
         self._traits["entries"] = image.entries.tobytes()
 
     def _render(self, scene: Scene) -> DisplayImage:
-        """The image of a scene at the present samples, which is kept. Raises InputError."""
-        size = (self._smooth * length for length in self._size)
-        self._rendering = rendering(scene, *size, self._rendering)
-        self._image = display_image(scene, self._rendering.picture, self._image)
+        """The image of a scene at the present samples, and note it. Raises InputError.
+
+        While the picture moves and is coarse, the image is that of the display: samples would take too long.
+        """
+        shown, smooth, (lines, elements) = self._studio.display_image, self._smooth, self._size
+        picture, block = shown.picture, smooth * shown.block
+        if shown.block == 1:
+            self._rendering = rendering(scene, smooth * lines, smooth * elements, self._rendering)
+            picture, block = self._rendering.picture, 1
+        self._image = display_image(scene, picture, self._image, block)
         return self._image
 
     def _remove_closed(self) -> None:

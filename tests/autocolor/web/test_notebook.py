@@ -345,6 +345,23 @@ def test_every_step_of_the_studio_shows_in_all_widgets(tmp_path: Path) -> None:
     assert cells[0].traits["picture"]["surfaces"][0]["name"] == "low"
 
 
+def test_a_picture_that_moves_is_as_coarse_in_a_widget_as_on_the_display(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    studio = opened()[0]
+    _, cell = shown_in(studio)
+    monkeypatch.setattr("autocolor.studio.block_for", lambda *_: 4)
+    studio.edit(studio.scene.with_view(angle=20), moving=True)
+    assert studio.is_coarse
+    lines, elements, _ = cell.field.shape
+    blocks = cell.field.reshape(lines // 8, 8, elements // 8, 8, 3)
+    assert (blocks == blocks[:, :1, :, :1]).all()
+    # The ranges of levels are those of the samples.
+    assert np.allclose(cell.field[::2, ::2], shown_colors(studio.display_image), atol=2)
+    studio.refine()
+    assert np.array_equal(cell.field, seen(studio))
+
+
 def test_a_closed_widget_hears_nothing_and_a_new_one_shows_the_display() -> None:
     studio = opened()[0]
     widgets = [shown_in(studio)[0] for _ in range(2)]
