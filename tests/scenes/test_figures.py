@@ -325,7 +325,7 @@ def test_the_lacquer_of_the_coupe_and_the_wet_floor_shine_under_the_lamp_behind_
             times[where, name] = brightest[1] / brightest[0]
     assert all(0.999 < times["eye", name] < 1.02 for name in figure_incidence.SURFACES)
     assert times["behind", "body"] > 3
-    assert times["behind", "floor"] > 1.5
+    assert times["behind", "stage"] > 1.5
 
 
 def test_a_lacquered_plane_shines_more_where_the_lamp_behind_the_pyramid_grazes_it() -> None:
