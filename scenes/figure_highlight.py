@@ -13,7 +13,7 @@ from scenes.figures import Field, Sheet, open_studio, read_scene
 ON_THE_COUPE: Final = {
     "A. On the Front of the Hood": (240, 110),
     "B. Below the Windshield": (200, 255),
-    "C. At the Edge of the Hood": (262, 245),
+    "C. At the Edge of the Hood": (258, 245),
 }
 """Lines and elements of the pixels."""
 
@@ -53,8 +53,7 @@ def main() -> None:
         studio = open_studio(scene)
         for caption, (line, element) in places.items():
             studio.place_highlight("lamp", line * figures.SMOOTH, element * figures.SMOOTH)
-            place = line // sheet.reduction, element // sheet.reduction
-            sheet.add(marked(sheet.panel_of(studio), *place), caption, caption[0].lower())
+            sheet.add(marked(sheet.panel_of(studio), line, element), caption, caption[0].lower())
     sheet.write(across=3)
 
 

@@ -15,7 +15,7 @@ from scenes.modeling.coupe.curves import Array
 from scenes.modeling.coupe.parts import Names, Parts
 
 THICKNESS = 0.025
-"""Of the lining below the roof, the pillars and the hatch."""
+"""Of the lining below the roof and inside the pillars."""
 FLOOR = 0.45
 SEAT_Y = 0.37
 BAND = 2
@@ -50,8 +50,8 @@ def lining(parts: Parts, points: Array, names: Names) -> Array:
     inner[..., 1] = np.where(points[..., 1] < 1e-9, 0.0, inner[..., 1])
     is_open = names == ""
     lined = np.where(is_open, "", "lining")
-    # Glass and sail begin and end in points.
-    lined[[0, -1]] = ""
+    # Glass and sail begin and end in points. The hatch glass needs no lining.
+    lined[[0, -1]] = lined[names == "hatch_glass"] = ""
     parts.grid(lined, inner, outward=(0, -0.3, -1))
     for axis in (0, 1):
         ahead = np.diff(is_open.astype(int), axis=axis)
@@ -65,7 +65,7 @@ def lining(parts: Parts, points: Array, names: Names) -> Array:
 
 def padded(parts: Parts, part: str, stations: Array, *, mirror: bool = True) -> None:
     """Add a cushion along stations (n, 5): x, y, z of the middle, half its width and half its thickness."""
-    angle = np.linspace(0, 2 * np.pi, 17)[:-1]
+    angle = np.linspace(0, 2 * np.pi, 15)[:-1]
     wide, deep = (np.sign(w) * np.abs(w) ** 0.6 for w in (np.cos(angle), np.sin(angle)))
     middle = stations[:, None, :3]
     along = np.gradient(stations[:, :3], axis=0)
@@ -81,7 +81,7 @@ def padded(parts: Parts, part: str, stations: Array, *, mirror: bool = True) -> 
 
 
 def seats(parts: Parts) -> None:
-    """Add two front seats with head rests, and the bench behind them."""
+    """Add the backs of two front seats with head rests, and of the bench behind them."""
     y = SEAT_Y
     padded(parts, "seats", np.array([
         (0.16, y, 0.50, 0.20, 0.04), (0.17, y, 0.53, 0.24, 0.065), (0.20, y, 0.64, 0.25, 0.07),
@@ -91,10 +91,6 @@ def seats(parts: Parts) -> None:
     padded(parts, "seats", np.array([
         (0.325, y, 1.035, 0.09, 0.025), (0.33, y, 1.05, 0.115, 0.04), (0.345, y, 1.095, 0.12, 0.045),
         (0.355, y, 1.13, 0.11, 0.04), (0.36, y, 1.145, 0.08, 0.02),
-    ]))  # fmt: skip
-    padded(parts, "seats", np.array([
-        (-0.36, y, 0.55, 0.20, 0.04), (-0.34, y, 0.56, 0.24, 0.06), (-0.1, y, 0.565, 0.25, 0.07),
-        (0.15, y, 0.55, 0.25, 0.07), (0.18, y, 0.55, 0.24, 0.06),
     ]))  # fmt: skip
     padded(parts, "seats", np.array([
         (0.86, 0.33, 0.55, 0.30, 0.06), (0.90, 0.33, 0.70, 0.31, 0.07), (0.95, 0.33, 0.86, 0.30, 0.06),

@@ -96,8 +96,8 @@ def boxed(parts: Parts, lens: Array, name: str, depth: float, *, mirror: bool = 
     """Add a lens and the dark box behind its rim."""
     outward = float(np.sign(lens[0, 0, 0]))
     parts.grid(name, lens, outward=(outward, 0, 0), mirror=mirror)
-    rim = border(lens)
-    middle = rim.mean(axis=0)
+    rim = border(lens[[0, -1]][:, [0, -1]])
+    middle = rim[:-1].mean(axis=0)
     frame = middle + (rim - middle) * [1, 1.05, 1.10] - [outward * 0.004, 0, 0]
     back = frame - [outward * depth, 0, 0]
     parts.grid("lamp_frames", np.stack([rim, frame], axis=1), outward=(outward, 0, 0), mirror=mirror)

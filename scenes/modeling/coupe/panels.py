@@ -113,7 +113,7 @@ def arch(parts: Parts, part: str, skin_: Skin, columns: tuple[int, int], axle: f
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1) * ARCH_RADIUS + [axle, ARCH_HEIGHT]
     guess = np.stack([s_at(circle[:, 0], CREASE), circle[:, 1] * 9 - 1], axis=1)
     inner = invert(wall, circle, (0, 2), guess)
-    steps = np.array([0.0, 0.1, 0.22, 0.36, 0.52, 0.74, 1.0])
+    steps = np.array([0.0, 0.12, 0.27, 0.46, 0.70, 1.0])
     ring = skin(inner[:, None] * (1 - steps[:, None]) + outer[:, None] * steps[:, None])
     parts.grid(part, ring)
 
