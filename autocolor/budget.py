@@ -1,8 +1,8 @@
-"""The budget of memory: one estimate at the door of a file or a picture, which may be refused.
+"""The budget of memory: one estimate before a file is read or a picture is rendered, which may be refused.
 
-The estimates are bytes for each byte of a file, row or pixel, as measured. Users allow more with `--limit` of
-the commands and `limit=` of the functions, a factor for the budget. If memory ends all the same, functions
-raise MemoryError, and commands exit with 71.
+The estimates are bytes for each byte of a file, row or pixel. Users allow more with `--limit` of the commands
+and `limit=` of the functions, a factor for the budget. If memory ends all the same, functions raise
+MemoryError, and commands exit with 71.
 """
 
 from __future__ import annotations

@@ -110,11 +110,8 @@ def save_image(
     `sync=False` the file is not synced to the disk, for programs that write many images: a killed program
     still leaves whole files, but after a power failure a new file may be empty.
 
-    Raises UsageError if the scene and the picture are in the wrong order, for a name that ends as another
-    kind of file does, for a wrong `level` or `size`, for a `size` beside a picture, and if the lines or
-    elements of the picture are no multiple of `smooth`; InputError as `render`, and if the surfaces of the
-    picture are not those of the scene; OutputError if the file exists and `overwrite` is false, or if it
-    cannot be created; WriteError if writing fails.
+    Raises UsageError for wrong arguments, InputError as `render` and if the picture is not the scene's, and
+    OutputError or WriteError if the file cannot be written.
     """
     from ramtek_emu.png import png_bytes
 
@@ -157,8 +154,7 @@ def save_words(
     order, and their entries are the palette. The colors equal `image` with `smooth=1`.
 
     Raises UsageError for a name that does not end in .png, and if `indexed` and more than 256 words are in
-    use; InputError if an intensity is not finite, or if the surfaces of the picture are not those of the
-    scene; OutputError and WriteError as `save_image`.
+    use; other errors as `save_image`.
     """
     from PIL import Image
 

@@ -1,237 +1,167 @@
-"""The paper in an hour: a notebook, in cells that begin with `# %%`.
+"""The paper in 45 minutes: a lesson in cells that begin with `# %%`, as editors and jupytext know them.
 
 `python -m docs.generate.notebook > examples/the_paper.ipynb` runs the cells and writes the notebook. Edit
-this file, not the notebook. Editors that know such cells run them here.
+this file, not the notebook. The solutions of the tasks are Python blocks of the texts, and run, too.
 """
 
 from __future__ import annotations
 
 # %% [markdown]
-# # The paper in an hour
+# # The paper in 45 minutes
 #
-# D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983, describes how GM Research lit cars
-# in a computer, as photographers light them in a studio. It also describes how a color is changed in a
-# picture that takes minutes to compute: the picture is not computed again. This notebook goes through the
-# paper in its own order. You compute one pixel by hand, and compare each number with what the program
-# gives.
+# In 1983, David Warn of General Motors Research described how cars are lit in a computer as photographers
+# light them in a studio, and how a picture that took minutes to compute gets new colors at once. This
+# lesson follows his paper, "Lighting Controls for Synthetic Images". You need some Python and the cosine.
+# Set it up in the folder of the project with three lines:
 #
-# You need `pip install .` in the folder of the project, numpy, and some school geometry. Read the paper
-# beside it if you can: it has nine pages.
+#     python3 -m venv .venv
+#     .venv/bin/pip install ".[notebook]" jupyterlab
+#     .venv/bin/jupyter lab examples/the_paper.ipynb
+#
+# | minutes | part | tasks |
+# |---|---|---|
+# | 5 | A car to recolor | 1 |
+# | 10 | Light without limits | 2, 3 |
+# | 12 | Light controls | 4, 5 |
+# | 15 | Words, ranges and entries | 6, 7, 8 |
+# | 3 | Where to go on | |
+#
+# Run a cell with Shift+Enter. Make your **prediction** before you run the cell below it; until then its
+# result is folded. Try each **task** in a cell of your own (the key B adds a cell), then open the solution.
 
 # %%
-from importlib.util import find_spec
-
+import ipywidgets
 import numpy as np
-import numpy.typing as npt
 from PIL import Image
 
 import autocolor
-from autocolor import Flap, Light, Mesh, Phong, Scene, Studio, View
-from autocolor.explanation.text import rows_of_text
-from ramtek_emu import Configuration, Ramtek9300
-
-LINES, ELEMENTS = 240, 320
-
-Floats = npt.NDArray[np.float64]
-
-
-def shown(scene: Scene) -> tuple[Studio, Ramtek9300]:
-    """A studio that shows a scene, and its display, which is smaller than the paper's."""
-    small = Configuration(name="SMALL", elements=ELEMENTS, lines=LINES, planes=10)
-    display = Ramtek9300(small)
-    return Studio(scene, display), display
-
-
-def beside(*scenes: Scene) -> Image.Image:
-    """The pictures of scenes, side by side."""
-    fields = [autocolor.image(scene, size=(200, 150)) for scene in scenes]
-    return Image.fromarray(np.hstack(fields)).quantize(192)
-
+from ramtek_emu import Ramtek9300
 
 # %% [markdown]
-# ## Introduction: what there is
+# ## A car to recolor (5 minutes)
 #
-# An object is a mesh of polygons with three or four sides. Polygons form parts, such as a door. Each part
-# has a surface type, such as glass, and each surface type has a reflectance and colors. GM kept all of it
-# in tables of a relational data base. Their car was a Camaro of 8,136 polygons. Ours is a coupe that comes
-# with the program.
+# A studio renders a scene once and sends it to a display, here an emulated RAMTEK 9300. Click the body of
+# the car and mix a color. The line below the picture says what was sent.
 
 # %%
-coupe = autocolor.demo()
-mesh = coupe.mesh
-print(f"{len(mesh.coordinates):,} nodes, {len(mesh.node_numbers):,} polygons")
-hood = coupe.parts[0]
-print(f"{len(coupe.parts)} parts, such as {hood.name!r} with the surface {hood.surface!r}")
-print("surfaces:", ", ".join(surface.name for surface in coupe.surfaces))
-print("lights:", ", ".join(light.name for light in coupe.lights))
+car = autocolor.demo()
+display = Ramtek9300()
+studio = autocolor.Studio(car, display)
+studio.widget()
 
 # %% [markdown]
-# A studio renders a scene and sends it to a display, here an emulated RAMTEK 9300.
-
-# %%
-studio, display = shown(coupe)
-studio
-
-# %% [markdown]
-# ## The lighting model
+# The picture has 307,200 pixels. For each pixel the display stores a *word*, a number from 0 to 1023. The
+# word is a place in a table of 1024 colors, which are called *entries*.
 #
-# Before there is any color, there are two arrays of the size of the picture. The virtual picture array has
-# an unscaled floating-point intensity for each pixel. A second array has the number of the surface that
-# the pixel shows. A picture in this program is these two arrays. In a notebook it shows the intensities in
-# gray.
+# **Task 1.** Paint the body green in one line of Python.
+#
+# <details><summary>Solution</summary>
+#
+# ```python
+# studio.recolor("body", object_color="#1c5a34", light_color="#f4fff0", blend=0.6)
+# ```
+#
+# </details>
+#
+# **Prediction.** How many words does a new color of the body change, and how many entries?
+
+# %% jupyter={"outputs_hidden": true}
+words, entries = display.words.copy(), display.entries.copy()
+studio.recolor("body", object_color="#1f4fbf", light_color="#e8f4ff", blend=0.5)
+print(np.count_nonzero(display.words != words), "words")
+print(np.count_nonzero((display.entries != entries).any(axis=1)), "entries")
+
+# %% [markdown]
+# This is the idea of the paper. In 1983 a picture took one to five minutes, and a new color no time at all.
+# The next parts show which numbers make this possible.
+#
+# ## Light without limits (10 minutes)
+#
+# Before there is any color, a picture is two arrays: an unscaled intensity for each pixel, and the number
+# of the surface that the pixel shows. The least and the largest intensity of each surface are noted.
 
 # %%
 picture = studio.picture
-print("intensity", picture.intensity.dtype, picture.intensity.shape)
-print("surface number", picture.surface_number.dtype, picture.surface_number.shape)
-picture
-
-# %% [markdown]
-# While the picture is computed, the minimum and the maximum of the intensity are noted for the whole
-# picture and for each surface. The display needs them later.
-
-# %%
+print(picture.intensity.dtype, picture.surface_number.dtype, picture.intensity.shape)
 for name, (low, high) in picture.ranges.surfaces.items():
-    print(f"{name:7} {low:.3f} to {high:.3f}")
+    print(f"{name:10} {low:.3f} to {high:.3f}")
 
 # %% [markdown]
-# ### One pixel
+# **Task 2.** Find the line and the element of the brightest pixel of the body.
 #
-# Let us look at one pixel of the hood, at the edge of a highlight. At first the four lights are point
-# sources: they shine in all directions, like bare bulbs. `explain` gives every number of a pixel by the
-# plain formulas of the paper.
-
-# %%
-LINE, ELEMENT = 112, 68
-lights = [Light(light.name, light.position, light.intensity) for light in coupe.lights]
-bulbs = coupe.replace(lights=lights)
-studio_of_bulbs, _ = shown(bulbs)
-why = studio_of_bulbs.explain(LINE, ELEMENT)
-print(*rows_of_text(why), sep="\n")
-
-# %% [markdown]
-# This is the whole paper for one pixel. Now we compute it again, step by step.
+# <details><summary>Solution</summary>
 #
-# **The point.** The hidden surface algorithm has found the polygon. We need its corners: where they are on
-# the raster, in pixels from the upper left, and how far they are ahead of the eye.
-
-# %%
-assert why.point is not None
-corners = np.array([corner.coordinates for corner in why.point.corners])
-normals = np.array([corner.normal for corner in why.point.corners])
-
-view = coupe.view
-eye, (right, down, ahead) = np.array(view.eye), view.axes
-focal = LINES / 2 / np.tan(np.radians(view.field_of_view / 2))
-
-depth = (corners - eye) @ ahead
-x = ELEMENTS / 2 + focal * ((corners - eye) @ right) / depth
-y = LINES / 2 + focal * ((corners - eye) @ down) / depth
-print(np.column_stack([x, y, depth]).round(3))
-
-# %% [markdown]
-# The scan line runs through the middle of its pixels, and crosses two edges of the polygon. We interpolate
-# along both edges down to the scan line, and then along the scan line to the pixel: this is the bilinear
-# interpolation of the paper. The program departs from the paper in one detail. It interpolates 1 / depth
-# and normal / depth, which are linear on the raster, so that the result is also right in perspective.
-
-# %%
-at_corners = np.column_stack([x, 1 / depth, normals / depth[:, None]])
-crossings = []
-for one, other in zip(range(4), (1, 2, 3, 0), strict=True):
-    share = (LINE + 0.5 - y[one]) / (y[other] - y[one])
-    if 0 <= share < 1:
-        crossings.append((1 - share) * at_corners[one] + share * at_corners[other])
-start, end = sorted(crossings, key=lambda crossing: float(crossing[0]))
-share = (ELEMENT + 0.5 - start[0]) / (end[0] - start[0])
-_, inverse_depth, *normal = (1 - share) * start + share * end
-
-
-def unit(vector: npt.ArrayLike) -> Floats:
-    """The vector, scaled to length 1."""
-    array = np.asarray(vector, float)
-    return np.asarray(array / np.linalg.norm(array))
-
-
-def cosine(one: Floats, other: Floats) -> float:
-    """The cosine of the angle between two unit vectors; 0 for more than a right angle."""
-    return max(float(one @ other), 0.0)
-
-
-across, below = ELEMENT + 0.5 - ELEMENTS / 2, LINE + 0.5 - LINES / 2
-ray = ahead + (across * right + below * down) / focal
-P = eye + ray / inverse_depth
-N = unit(normal)
-print("P =", P.round(4), " N =", N.round(4))
-assert np.allclose(P, why.point.point)
-assert np.allclose(N, why.point.normal)
-
-# %% [markdown]
-# **The light.** Figures 1 and 2 of the paper. Each light gives a diffuse and a specular part:
+# ```python
+# on_body = picture.surface_number == picture.surfaces.index("body") + 1
+# brightest = np.where(on_body, picture.intensity, 0).argmax()
+# print(np.unravel_index(brightest, picture.intensity.shape))
+# ```
+#
+# </details>
+#
+# The renderer finds the point and the normal of the surface in each pixel. Then each light adds a diffuse
+# and a specular part (Figures 1 and 2 of the paper):
 #
 #     light(j) = intensity(j) (D cos(I) + S cos^N(E))
 #
-# I is the angle between the normal and the ray to the light. E is the angle between the reflected ray of
-# the light and the ray to the eye. We reflect the ray to the eye instead of the rays of all lights. This
-# is R, and E is the angle between R and the ray to the light.
+# I is the angle between the normal and the ray to the light. E is the angle between the ray to the light
+# and the ray to the eye, mirrored at the normal. `explain` gives the numbers of a pixel. At first we make
+# the lights bare bulbs, which shine in all directions.
 
 # %%
-reflectance = why.point.reflectance
-model = reflectance.model
-assert isinstance(model, Phong)
-D, S, n = reflectance.diffuse, reflectance.specular, model.exponent
-print(f"D = {D}, S = {S}, N = {n}")
-
-to_eye = unit(eye - P)
-R = 2 * (N @ to_eye) * N - to_eye
-intensity = coupe.ambient
-for light in bulbs.lights:
-    to_light = unit(np.array(light.position) - P)
-    cos_i, cos_e = cosine(N, to_light), cosine(R, to_light)
-    diffuse, specular = light.intensity * D * cos_i, light.intensity * S * cos_e**n
-    print(f"{light.name:5} diffuse {diffuse:.4f}  specular {specular:.4f}")
-    intensity += diffuse + specular
-
-print(f"by hand          {intensity:.6f}")
-print(f"by the renderer  {studio_of_bulbs.picture.intensity[LINE, ELEMENT]:.6f}")
-assert np.isclose(intensity, studio_of_bulbs.picture.intensity[LINE, ELEMENT], rtol=1e-4)
+bulbs = car.replace(lights=[autocolor.Light(each.name, each.position, each.intensity) for each in car.lights])
+bright = autocolor.Studio(bulbs)
+on_body = bright.picture.surface_number == picture.surfaces.index("body") + 1
+line, element = np.unravel_index(np.where(on_body, bright.picture.intensity, 0).argmax(), on_body.shape)
+point = bright.explain(int(line), int(element)).point
+assert point is not None
+P, normal = np.array(point.point), np.array(point.normal)
+to_eye = (np.array(car.view.eye) - P) / point.distance
+model = point.reflectance.model
+assert isinstance(model, autocolor.Phong)
+D, S, N = point.reflectance.diffuse, point.reflectance.specular, model.exponent
+print(f"line {line}, element {element}: D = {D}, S = {S}, N = {N}")
 
 # %% [markdown]
-# **No limits.** Intensities are scaled for the display only afterwards. So there is no limit for D and S,
-# or for the number and the intensity of lights: with a thousand times the light, the display gets the same
-# words.
-
-# %%
-stronger = [light.replace(intensity=1000 * light.intensity) for light in bulbs.lights]
-strong_studio, _ = shown(bulbs.replace(lights=stronger, ambient=1000 * bulbs.ambient))
-print(f"maximum {strong_studio.picture.ranges.whole.maximum:.1f}")
-print("words that differ", np.count_nonzero(strong_studio.words != studio_of_bulbs.words))
-
-# %% [markdown]
-# ## Light controls
+# **Task 3.** Compute the intensity of this pixel from `P`, `normal`, `to_eye`, D, S, N, and the lights'
+# positions and intensities. Both vectors have length 1. A negative cosine counts as 0. The ambient light is
+# `car.ambient`.
 #
-# Bare bulbs are hard to place. Left, the car under the four bulbs; right, under one bulb at the eye, as in
-# Figure 7. Cars are not photographed like this.
-
-# %%
-beside(bulbs, coupe.replace(lights=[Light("eye", view.eye)]))
-
-# %% [markdown]
-# ### Direction and concentration
+# <details><summary>Solution</summary>
 #
-# A directed light is modeled as a point that reflects light, and is itself shiny. Its light falls off with
-# the angle L from its direction by cos^C(L). C is the concentration. With C = 0 the light is a point
-# source again. At these angles half of the light is left:
+# ```python
+# mirrored = 2 * (normal @ to_eye) * normal - to_eye
+# intensity = bulbs.ambient
+# for light in bulbs.lights:
+#     to_light = np.array(light.position) - P
+#     to_light = to_light / np.linalg.norm(to_light)
+#     cos_i, cos_e = max(normal @ to_light, 0), max(mirrored @ to_light, 0)
+#     intensity += light.intensity * (D * cos_i + S * cos_e**N)
+# print(f"{intensity:.4f} by hand, {bright.picture.intensity[line, element]:.4f} by the renderer")
+# assert np.isclose(intensity, bright.picture.intensity[line, element], rtol=1e-3)
+# ```
+#
+# </details>
+#
+# **Prediction.** Make all lights a thousand times stronger. How many words of the display change?
 
-# %%
-for C in (1, 10, 40):
-    print(f"C = {C:2}: {np.degrees(np.arccos(0.5 ** (1 / C))):.1f} degrees")
+# %% jupyter={"outputs_hidden": true}
+lights = [light.replace(intensity=1000 * light.intensity) for light in bulbs.lights]
+strong = autocolor.Studio(bulbs.replace(lights=lights, ambient=1000 * bulbs.ambient))
+print(np.count_nonzero(strong.words != bright.words), "words")
 
 # %% [markdown]
-# Figure 4 of the paper: a pyramid on a plane. A mesh is an array of nodes and an array of polygons, which
-# name their nodes; a triangle repeats its last one. The point source at the left makes a bright spot on
-# the plane that nobody wants. Aimed at the side of the pyramid with C = 1, the light is a flood. With C =
-# 40 it is a spotlight.
+# Intensities have no limit: they are scaled for the display only at the end.
+#
+# ## Light controls (12 minutes)
+#
+# Bare bulbs are hard to place. A directed light is like a shiny point: its light falls off with the angle L
+# from its direction by
+#
+#     cos^C(L)
+#
+# C is the concentration. Figure 4 of the paper shows a pyramid on a plane. Move the slider: C = 0 is a bulb,
+# 1 a flood light, 40 a spotlight. The bright spot on the plane, which nobody wants, goes.
 
 # %%
 nodes = [(-1.2, -1.2, 0), (1.2, -1.2, 0), (1.2, 1.2, 0), (-1.2, 1.2, 0), (0, 0, 2)]
@@ -239,207 +169,178 @@ nodes += [(-6, -6, 0), (6, -6, 0), (6, 6, 0), (-6, 6, 0)]
 polygons = [(0, 1, 4, 4), (1, 2, 4, 4), (2, 3, 4, 4), (3, 0, 4, 4), (5, 6, 7, 8)]
 parts = np.array([0, 0, 0, 0, 1])
 pyramid = autocolor.scene_of(
-    Mesh(np.array(nodes, float), np.array(polygons), parts, ("pyramid", "plane")),
+    autocolor.Mesh(np.array(nodes, float), np.array(polygons), parts, ("pyramid", "plane")),
     surfaces="parts",
-    view=View((3.6, -8.5, 5.2), target=(0.8, -0.8, 0.45), field_of_view=33),
-    lights=[Light("lamp", (3.3, -1.2, 1.0))],
+    view=autocolor.View((3.6, -8.5, 5.2), target=(0.8, -0.8, 0.45), field_of_view=33),
+    lights=[autocolor.Light("lamp", (3.3, -1.2, 1.0), aim=(0.5, 0.0, 0.9))],
     ambient=0.08,
     scaling="object",
 )
 pyramid = pyramid.with_surface("pyramid", diffuse=0.9, specular=0.2, object_color="#e0a030")
 pyramid = pyramid.with_surface("plane", exponent=40, object_color="#5878b8")
-flood = pyramid.with_light("lamp", aim=(0.5, 0.0, 0.9), concentration=1)
-beside(pyramid, flood, flood.with_light("lamp", concentration=40))
+
+
+@ipywidgets.interact(C=(0, 60))
+def with_concentration(C: int = 1) -> Image.Image:
+    """The picture of the pyramid with a concentration of its light."""
+    scene = pyramid.with_light("lamp", concentration=C)
+    return Image.fromarray(autocolor.image(scene, size=(480, 360)))
+
 
 # %% [markdown]
-# The four lights of the coupe are aimed and concentrated. Figure 8 of the paper shows what each of them
-# does alone. The whole picture is the sum of these four, and of the ambient light.
+# **Task 4.** At which angle L is half of the light left, for C = 1, 10 and 40?
+#
+# <details><summary>Solution</summary>
+#
+# ```python
+# for C in (1, 10, 40):
+#     print(f"C = {C}: {np.degrees(np.arccos(0.5 ** (1 / C))):.1f} degrees")
+# ```
+#
+# </details>
+#
+# **Prediction.** The car has several lights (Figure 8 shows each alone). What is the sum of the pictures in
+# which one light shines alone and without ambient light?
 
-# %%
-alone = [coupe.only_lights(light.name) for light in coupe.lights]
-pictures = [autocolor.render(scene.replace(ambient=0), (ELEMENTS, LINES)) for scene in alone]
+# %% jupyter={"outputs_hidden": true}
+alone = [autocolor.render(car.only_lights(light.name).replace(ambient=0)).intensity for light in car.lights]
 is_seen = picture.surface_number > 0
-total = np.sum([each.intensity for each in pictures], axis=0) + coupe.ambient
-assert np.allclose(picture.intensity[is_seen], total[is_seen], rtol=1e-4)
-# One range for all pictures, so that less light looks darker.
-exposure = {"object": (0.0, picture.ranges.whole.maximum / 2)}
-beside(*(scene.replace(exposure=exposure, mapping="gamma") for scene in alone))
+difference = np.abs(sum(alone) + car.ambient - picture.intensity)[is_seen]
+print(f"at most {difference.max():.5f} beside the picture of all lights, of {picture.intensity.max():.1f}")
+assert difference.max() < 1e-3 * picture.intensity.max()
 
 # %% [markdown]
-# The program stores the diffuse and the specular part of each light, as planes. If one light is moved, the
-# other planes are the same arrays as before. If only its intensity changes, no plane is computed, just the
-# sum.
-
-# %%
-before = dict(studio.picture.light_planes)
-studio.light("side", aim=(0.5, -0.9, 0.75))
-after = studio.picture.light_planes
-studio.undo()
-used_again = [name for name in after if after[name].values is before[name].values]
-print("used again:", *used_again)
-
-# %% [markdown]
-# ### Flaps and cones
+# So if a light moves, the parts of the other lights stay.
 #
-# Barn doors on a studio lamp restrict its light. Here they are a minimum and a maximum of a coordinate,
-# with a switch (Figure 9): outside, the light has no effect. The light of the pictures below ends at the
-# crease along the side of the car, and in the last picture also below the roof.
+# Flaps are the barn doors of a lamp (Figure 9): a minimum and a maximum of a coordinate, outside of which
+# the light has no effect. This lamp lights the whole side of the car:
 
 # %%
-lamp = Light("lamp", (-4.0, -6.0, 2.0), aim=(0.0, 0.0, 0.6), concentration=4)
-side_view = View((-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52), field_of_view=23)
-side = coupe.replace(lights=[lamp], view=side_view, ambient=0.12, mapping="gamma")
-beside(
-    side,
-    side.with_light("lamp", flaps={"z": Flap(minimum=0.555)}),
-    side.with_light("lamp", flaps={"z": Flap(minimum=0.555, maximum=1.0)}),
-)
+lamp = autocolor.Light("lamp", (-4.0, -6.0, 2.0), aim=(0.0, 0.0, 0.6), concentration=4)
+side_view = autocolor.View((-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52), field_of_view=23)
+side = car.replace(lights=[lamp], view=side_view, ambient=0.12, mapping="gamma")
+
+
+def shown(scene: autocolor.Scene) -> Image.Image:
+    """The picture of a scene, small and with few colors."""
+    return Image.fromarray(autocolor.image(scene, size=(320, 240))).quantize(128)
+
+
+shown(side)
 
 # %% [markdown]
-# A cone (Figure 10) is a sharp edge around the direction of a light: there is no light where L is larger
-# than the angle A. As printed in the paper, the test is the wrong way round: a point is in the cone if
-# cos(L) is **not less** than cos(A). The pictures have no cone, A = 14 degrees and A = 7 degrees.
-
-# %%
-spot = Light("spot", (-5.0, -4.0, 5.0), aim=(-0.9, -0.3, 0.8), concentration=6)
-spotlit = coupe.replace(lights=[spot], ambient=0.12, mapping="gamma")
-beside(spotlit, *(spotlit.with_light("spot", cone_angle=angle) for angle in (14.0, 7.0)))
-
-# %% [markdown]
-# **The pixel again**, now under the real lights. Each control is a factor of the light.
-
-# %%
-why = studio.explain(LINE, ELEMENT)
-intensity = coupe.ambient
-for light in coupe.lights:
-    assert light.aim is not None
-    direction = unit(np.array(light.aim) - light.position)
-    to_light = unit(np.array(light.position) - P)
-    cos_l = cosine(direction, -to_light)
-    flap = light.flaps.z
-    is_lit = flap is None or flap.minimum <= P[2] <= flap.maximum
-    control = cos_l**light.concentration * is_lit
-    cos_i, cos_e = cosine(N, to_light), cosine(R, to_light)
-    print(f"{light.name:5} cos^C(L) {cos_l**light.concentration:.4f}  flap {is_lit:d}")
-    intensity += light.intensity * control * (D * cos_i + S * cos_e**n)
-print(f"by hand          {intensity:.6f}")
-print(f"by the renderer  {picture.intensity[LINE, ELEMENT]:.6f}")
-assert np.isclose(intensity, picture.intensity[LINE, ELEMENT], rtol=1e-4)
-
-# %% [markdown]
-# ## Light source color blending
+# **Task 5.** Give the lamp a flap, so that its light begins at the crease of the side, at z = 0.555.
 #
-# ### Words and ranges
+# <details><summary>Solution</summary>
 #
-# The display has a number of ten bits for each pixel, a word. A lookup table with 1024 entries gives each
-# word its color. Figure 11: each surface owns a range of sequential words, and within its range a word
-# stands for an intensity. All three components of a color are in one entry. Three tables of eight bits
-# could not do this.
+# ```python
+# shown(side.with_light("lamp", flaps={"z": autocolor.Flap(minimum=0.555)}))
+# ```
+#
+# </details>
+#
+# A cone (Figure 10) ends the light sharply at an angle A from its direction. The paper prints that a point
+# is in the cone if cos(L) is at most cos(A). **Prediction.** Would this light the inside of the cone? Below,
+# A is 7 degrees, with the test as it must be.
+
+# %% jupyter={"outputs_hidden": true}
+spot = autocolor.Light("spot", (-5.0, -4.0, 5.0), aim=(-0.9, -0.3, 0.8), concentration=6)
+shown(car.replace(lights=[spot.replace(cone_angle=7.0)], ambient=0.12, mapping="gamma"))
+
+# %% [markdown]
+# The cosine is larger for smaller angles. As printed, the test lights the outside.
+#
+# ## Words, ranges and entries (15 minutes)
+#
+# Figure 11: each surface owns a range of consecutive words. Within its range, a word stands for an
+# intensity. The lowest word is for the least intensity of the surface, the highest word for the largest.
 
 # %%
-paper = coupe.replace(scaling="surface", exposure="auto", contrast="stretch")
-studio, display = shown(paper)
+paper = car.replace(scaling="surface", exposure="auto", contrast="stretch", mapping="linear")
+studio = autocolor.Studio(paper, display)
+picture = studio.picture
 for name, (first, levels) in studio.level_ranges.items():
-    print(f"{name:7} words {first:3} to {first + levels - 1}")
-table = display.entries.reshape(16, 64, 3).repeat(8, axis=0).repeat(8, axis=1)
-Image.fromarray(table).quantize(192)
+    print(f"{name:10} words {first:3} to {first + levels - 1}")
 
 # %% [markdown]
-# In this scene, the range of intensities of each surface is scaled by itself, so the floor is brighter than
-# in the pictures above: the minimum and the maximum of a surface become the lowest and the highest word of
-# its range. Two lines of numpy give the words of the whole body. A word could differ from the display's by
-# one where rounding decides.
-
-# %%
-body = picture.surface_number == picture.surfaces.index("body") + 1
-first, levels = studio.level_ranges["body"]
-low, high = picture.ranges.surfaces["body"]
-fraction = (picture.intensity[body] - low) / (high - low)
-words = first + np.floor(fraction * (levels - 1) + 0.5).astype(int)
-difference = np.abs(words - display.words[body])
-print(f"{np.count_nonzero(difference)} of {len(words):,} words differ")
-assert difference.max() <= 1
-
-# %% [markdown]
-# ### Blending
+# **Task 6.** Compute the words of the body from `picture.intensity`, `picture.ranges.surfaces["body"]` and
+# `studio.level_ranges["body"]`. Compare them with `display.words`.
 #
-# Figure 12: a surface has two colors. Below the blend level it shows the object color, which is darker for
-# lower levels. From there on, the color shifts in equal steps to the color of the light source, up to the
-# highest level. Here is the range of the body by hand. It is equal to the table of the display.
+# <details><summary>Solution</summary>
+#
+# ```python
+# on_body = picture.surface_number == picture.surfaces.index("body") + 1
+# first, levels = studio.level_ranges["body"]
+# low, high = picture.ranges.surfaces["body"]
+# share = (picture.intensity[on_body] - low) / (high - low)
+# by_hand = first + np.floor(share * (levels - 1) + 0.5).astype(int)
+# difference = np.abs(by_hand - display.words[on_body])
+# print(np.count_nonzero(difference), "of", len(by_hand), "words differ, where rounding decides")
+# assert difference.max() <= 1
+# ```
+#
+# </details>
+#
+# Figure 12: a surface has two colors. Up to its blend level it shows the object color, darker for lower
+# levels. Above it, the color goes in equal steps to the color of the light source.
 
 # %%
 paint = paper.surfaces["body"].paint
-level = np.arange(levels)
-blend_level = np.floor(paint.blend * (levels - 1) + 0.5)
-share = np.clip((level - blend_level) / (levels - 1 - blend_level), 0, 1)
-share *= paint.light_percentage / 100
-mixed = np.outer(1 - share, paint.object_color) + np.outer(share, paint.light_color)
-entries = np.floor(mixed * (level / (levels - 1))[:, None] + 0.5).astype(np.uint8)
-assert (entries == display.entries[first : first + levels]).all()
-Image.fromarray(np.repeat(entries[None, :, :], 24, axis=0)).resize((3 * levels, 24))
+first, levels = studio.level_ranges["body"]
+print(paint.object_color, paint.light_color, f"blend {paint.blend}, light {paint.light_percentage} %")
+Image.fromarray(np.repeat(display.entries[None, first : first + levels], 24, axis=0)).resize((640, 24))
 
 # %% [markdown]
-# So our pixel has this word and this color:
-
-# %%
-word = int(display.words[LINE, ELEMENT])
-print(f"word {word} = {first} + level {word - first}, color {entries[word - first]}")
-assert (display.field()[LINE, ELEMENT] == entries[word - first]).all()
-
-# %% [markdown]
-# ### Recoloring
+# **Task 7.** Compute these entries by hand. For a level from 0 to `levels - 1`, the share of the light color
+# grows from the blend level on; the mixed color is multiplied by `level / (levels - 1)`.
 #
-# Now the point of it all. In 1983, a picture took one to five minutes. To paint the car, only the entries of
-# its range are sent. The display counts what is written to its memories: no word of the picture is written.
+# <details><summary>Solution</summary>
+#
+# ```python
+# level = np.arange(levels)
+# begin = np.floor(paint.blend * (levels - 1) + 0.5)
+# share = np.clip((level - begin) / (levels - 1 - begin), 0, 1) * paint.light_percentage / 100
+# mixed = np.outer(1 - share, paint.object_color) + np.outer(share, paint.light_color)
+# by_hand = np.floor(mixed * (level / (levels - 1))[:, None] + 0.5).astype(np.uint8)
+# assert (by_hand == display.entries[first : first + levels]).all()
+# ```
+#
+# </details>
+#
+# **Prediction.** Figure 15 shows one picture with three tables. The two colors are the same; the color of
+# the light begins at the top of the range, in its middle, and at its bottom. Which car has metallic paint?
 
-# %%
-words_before, entries_before = display.frame_buffer.written, display.entries.copy()
-studio.recolor("body", object_color="#1f4fbf", light_color="#e8f4ff", blend=0.5)
-changed = np.any(display.entries != entries_before, axis=1).sum()
-words_written = display.frame_buffer.written - words_before
-print(f"{words_written} words written, {changed} entries changed")
-assert display.frame_buffer.written == words_before
-display
-
-# %% [markdown]
-# Figure 15: one picture, three tables with the same two colors. The light source color begins at the top
-# of the range, in its middle, and at its lowest level. The last table looks like metallic paint.
-
-# %%
+# %% jupyter={"outputs_hidden": true}
 fields = []
 for blend in (1.0, 0.5, 0.0):
     studio.recolor("body", object_color="#a80c24", light_color="#ff9480", blend=blend)
-    fields.append(display.field()[40:200])
-assert display.frame_buffer.written == words_before
-Image.fromarray(np.hstack(fields)).quantize(192)
+    fields.append(display.field()[80:400:2, ::2])
+Image.fromarray(np.hstack(fields)).quantize(128)
 
 # %% [markdown]
-# The paper calls this an obvious simplification: a level stands for one mixture of diffuse and specular
-# light. Here are all pixels of the body with the word of our pixel. The specular share of their light
-# differs, and they all have one color. "But it works quite well."
-
-# %%
-planes = picture.planes
-light_of_highlights = S * np.sum(
-    [light.intensity * planes[light.name].specular for light in coupe.lights], axis=0
-)
-has_word = body & (display.words == word)
-specular_share = light_of_highlights[has_word] / picture.intensity[has_word]
-least, most = specular_share.min(), specular_share.max()
-print(f"{has_word.sum()} pixels, of whose light {least:.0%} to {most:.0%} is specular")
-
-# %% [markdown]
-# ## Conclusions
+# The paper calls the table "an obvious simplification": diffuse and specular light of the same sum have the
+# same word, and so the same color.
 #
-# Directed lights behave like those of a studio, so they are easier to place than bare bulbs. Flaps and
-# cones restrict them. And colors are chosen while the picture is on the screen. Try it: run this notebook
-# with the extra `notebook`, and the last cell is the display of the studio, on which you can change
-# colors. Each change is an edit of `studio`, and `studio.undo()` takes it back.
-
-# %%
-studio.widget() if find_spec("anywidget") else 'first: pip install ".[notebook]"'
-
-# %% [markdown]
-# Where to go on: `autocolor tutorial` is the same studio in a window, with the screens of Figures 5, 13
-# and 14. `tests/test_paper.py` has a short test for each claim of the paper, in this order. The other
-# scripts in `examples/` use what you have seen.
+# **Task 8.** Take the word that most pixels of the body have. Which shares of specular light do these pixels
+# have? The array `picture.planes[name].specular` is cos^N(E) times the controls of a light.
+#
+# <details><summary>Solution</summary>
+#
+# ```python
+# on_body = picture.surface_number == picture.surfaces.index("body") + 1
+# word = np.bincount(display.words[on_body]).argmax()
+# S = paper.surfaces["body"].reflectance.specular
+# specular = S * sum(light.intensity * picture.planes[light.name].specular for light in paper.lights)
+# has_word = on_body & (display.words == word)
+# share = specular[has_word] / picture.intensity[has_word]
+# print(f"{has_word.sum()} pixels, of whose light {share.min():.0%} to {share.max():.0%} is specular")
+# ```
+#
+# </details>
+#
+# ## Where to go on (3 minutes)
+#
+# Your edits are steps of the studio: `studio.undo()` takes them back, and `studio.save("car.npz")` keeps the
+# picture for other programs. `autocolor tutorial` opens the studio in a window, with the screens of Figures
+# 5, 13 and 14. `docs/guides/paper.md` goes through the whole paper, and `tests/test_paper.py` has a test for
+# each of its claims.

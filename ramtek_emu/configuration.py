@@ -99,8 +99,8 @@ shows a 9300 with a 24-bit table. It has two cursors, as Princeton's.
 FAMILY: Final = Configuration(name="FAMILY", elements=640, lines=480, planes=10)
 """The display of the paper, with the second operand flag word and the instructions of the 9400 and 9460.
 
-Departs: no display was built so. It runs the programs of the whole family with one size, ten planes and a
-table of 24 bits.
+Departs: no display was built like FAMILY, which runs the programs of all displays with one size, ten planes
+and a table of 24 bits.
 """
 
 PRINCETON_9300: Final = Configuration(

@@ -19,31 +19,37 @@ from docs.generate.site import PAGES, ROOT, documents, links_of, page_of, place_
 from docs.guides import pictures, pictures_of_displays
 from docs.guides.pictures import GUIDES, path_of
 from scenes.figures import Field
-from scenes.title_picture import FRAMES, LINES
+from scenes.title_picture import PATH, recolored
 from tests.tables import first
 from tests.test_architecture import WINGS
 
 README = (ROOT / "README.md").read_text("utf-8")
 (CODE,) = re.findall(r"^```python\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+(PRINTED,) = re.findall(r"^```text\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
 
 
-def test_the_lines_make_the_moving_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_lines_of_the_readme_print_what_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     for _ in range(2):
         names: dict[str, Any] = {}
         exec(CODE, names)
-    with Image.open("car.webp") as made, Image.open(ROOT / "docs" / "recolor.webp") as shown:
-        for number in range(FRAMES):
-            made.seek(number)
-            shown.seek(number)
-            assert (np.array(made.convert("RGB")) == np.array(shown.convert("RGB"))[:LINES]).all(), number
+        assert capsys.readouterr().out == PRINTED
+    names["studio"].undo()
     scene = names["studio"].scene
     with Image.open("blue.png") as blue:
         assert (np.array(blue) == autocolor.image(scene, autocolor.render(scene, smooth=2))).all()
 
 
-def test_the_lines_are_eight() -> None:
-    assert len([line for line in CODE.splitlines() if line]) == 8
+def test_the_picture_of_the_readme_is_that_of_its_script() -> None:
+    frames = recolored()
+    with Image.open(PATH) as film:
+        for number in (0, len(frames) // 2, len(frames) - 1):
+            film.seek(number)
+            assert (np.array(film.convert("RGB")) == frames[number]).all(), (
+                "run: python -m scenes.title_picture"
+            )
 
 
 TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
@@ -53,28 +59,27 @@ SOURCES = [
         "autocolor/lighting/controls.py",
         "autocolor/lighting/light.py",
         "autocolor/scene/lights.py",
-        "tests/autocolor/lighting/test_controls.py",
     )
 ]
 
-SECTION = TEXT[TEXT.index("### A light control") : TEXT.index("### A mapping curve")]
-QUOTES = re.findall(r"^```python\n(.*?)^```$", SECTION, re.DOTALL | re.MULTILINE)
 
-
-def test_the_light_control_is_quoted() -> None:
-    assert len(QUOTES) == 5
-
-
-@pytest.mark.parametrize("quote", QUOTES)
+@pytest.mark.parametrize("quote", re.findall(r"^```python\n(.*?)^```$", TEXT, re.DOTALL | re.MULTILINE))
 def test_the_light_control_is_quoted_as_it_is_in_the_source(quote: str) -> None:
     assert any(quote in source for source in SOURCES)
 
 
 @pytest.mark.parametrize("package", WINGS)
-def test_all_wings_of_a_package_are_told_in_their_order(package: str) -> None:
+def test_all_parts_of_a_package_are_described_in_their_order(package: str) -> None:
     table = TEXT[TEXT.index(f"| `{package}` | |") :].split("\n\n")[0]
-    told = re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in table.splitlines()))
-    assert (*told, "__main__") == (package, *WINGS[package])
+    names = re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in table.splitlines()))
+    assert (*names, "__main__") == (package, *WINGS[package])
+
+
+def test_the_tables_that_additions_need_are_in_their_files() -> None:
+    tables = re.findall(r"`(\w+)` of `([^`]+\.py)`", TEXT[TEXT.index("## Add something else") :])
+    assert tables
+    for name, file in tables:
+        assert re.search(rf"^(def )?{name}\b", (ROOT / file).read_text("utf-8"), re.MULTILINE), (name, file)
 
 
 PROMISES = [

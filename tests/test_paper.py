@@ -520,7 +520,7 @@ def test_a_color_is_mixed_by_bars_and_then_the_picture_is_sent_again(
     at_work.pull("object, red", 0.3, 0.9)
     assert at_work.paint.object_color[0] != red
     at_work.leave()
-    assert at_work.is_as_sent(at_work.viewer.studio.scene)
+    assert at_work.shows(at_work.scene)
 
 
 def test_the_white_bar_changes_all_three_components_by_the_same_amount(

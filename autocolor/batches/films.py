@@ -85,10 +85,9 @@ def animate(
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
     has the words of the first frame and then a load of the lookup table for each frame; it is never smooth.
 
-    Raises UsageError for an unknown suffix or a wrong rate. Raises InputError, with the frame, if a frame
-    cannot be made, or if a frame of a .ramtek file changes more than entries. A film or a stream is then not
-    written; numbered pictures that were finished stay. Raises OutputError or WriteError if the file cannot be
-    written.
+    Raises UsageError for an unknown suffix or a wrong rate, InputError with the frame that cannot be made,
+    and OutputError or WriteError if the file cannot be written. Without a whole film nothing is written, but
+    numbered pictures that were finished stay.
     """
     from ramtek_emu.films import write_film
 

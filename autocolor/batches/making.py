@@ -476,9 +476,8 @@ def batch(
     with each result.
 
     A variant that cannot be made has a `problem` in its result and issues a VariantWarning; all others are
-    made. Raises UsageError for a wrong argument, a key that the scene does not have, and arrays that exceed
-    the memory budget; InputError for an invalid source, and if no variant can be made; OutputError if a file
-    exists; WriteError if a file cannot be written; UnavailableError if the executor fails.
+    made. Raises UsageError for wrong arguments, InputError if no variant can be made, OutputError or
+    WriteError if a file cannot be written, and UnavailableError if the executor fails.
     """
     rows = variants_of(variants)
     if columns is not None and sheet is None:

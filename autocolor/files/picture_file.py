@@ -62,9 +62,8 @@ def write_picture(
 ) -> None:
     """Write a picture and its scene to a picture file, atomically; `guard` may refuse to overwrite a file.
 
-    Raises UsageError if the scene and the picture are in the wrong order, for a name that does not end in
-    .npz, or if only one of the two has a scalar; InputError if the surfaces of the picture are not those of
-    the scene; OutputError or WriteError if the file cannot be written.
+    Raises UsageError for wrong arguments, InputError if the picture is not the scene's, and OutputError or
+    WriteError if the file cannot be written.
     """
     check_surfaces(scene, picture)
     check_suffix(path, PICTURE_SUFFIX, "a picture with its scene")

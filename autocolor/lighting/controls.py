@@ -43,9 +43,9 @@ def soften(fraction: RealArray[Any]) -> RealArray[Any]:
 def soft_cone_share(cos_light: RealArray[Any], inner_angle: float, cone_angle: float) -> RealArray[Any]:
     """All of the light up to the inner angle, and nothing from the cone angle on; see `soften`.
 
-    Departs: the paper's cones have a sharp edge. Assumed: between the angles the share depends on cos(L), not
-    on L. So no pixel needs an arc cosine, and a share with an inner angle of 0 is smooth on the axis: there
-    cos(L) has a slope of 0, and L a corner.
+    Departs: a cone may have a soft edge; the paper's cones are sharp. Assumed: between the angles the share
+    depends on cos(L), not on L. So no pixel needs an arc cosine, and a share with an inner angle of 0 is
+    smooth on the axis: there cos(L) has a slope of 0, and L a corner.
     """
     kind = cos_light.dtype.type
     # Rounded like the cosines that it is subtracted from.
@@ -57,9 +57,9 @@ def soft_cone_share(cos_light: RealArray[Any], inner_angle: float, cone_angle: f
 def falloff_share(light: Light, reach: float, length: RealArray[Any]) -> RealArray[Any]:
     """(1 - f)^n at the distance f as a fraction of the reach, n = 1 or 2, and 0 beyond it.
 
-    Departs: the light of the paper does not depend on the distance, nor does a light without a falloff here.
-    Rejected: 1/d^2, which has no upper limit. A point close to the light would take the whole range of levels
-    and leave all others black. This falloff stays within 0 to 1, and ends.
+    Departs: a light may decrease with the distance; the paper's lights do not. Rejected: 1/d^2, which has no
+    upper limit. A point close to the light would take the whole range of levels and leave all others black.
+    This falloff stays within 0 to 1, and ends.
     """
     left: RealArray[Any] = np.maximum(1 - length / length.dtype.type(reach), 0)
     return left if light.falloff == "linear" else left * left
@@ -91,7 +91,7 @@ class LitSide(NamedTuple):
     """The lit side of a plane: the points P where the product of `row`, (4,), with (P, 1) is at least 0.
 
     Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow. Departs:
-    the paper has flaps along the axes alone, and its flaps end at once.
+    flaps may lie along any plane and have a soft edge; the paper's lie along the axes and are sharp.
 
     The product is the distance from the plane. From the distance `edge_width` on, all of the light is left.
     Both are in `VisiblePoints.unit`. An edge of the width 0 is sharp: a point on its plane is lit. `name` is
@@ -166,8 +166,8 @@ def lit_points(
 ) -> Booleans | None:
     """Whether each of some points is within all sharp sides and of a linked part; None for all of them.
 
-    `rows` are the columns `pixels` of `VisiblePoints.rows`. Departs: the paper's lights shine on all parts.
-    Links to surfaces are weights: see `shading.LightMix`.
+    `rows` are the columns `pixels` of `VisiblePoints.rows`. Links to surfaces are weights: see
+    `shading.LightMix`.
     """
     masks = [is_inside(side, rows[POINT]) for side in sides if side.edge_width == 0]
     if light.links.depend_on_parts:

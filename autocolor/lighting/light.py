@@ -101,7 +101,7 @@ class Rays:
 def rays_to(light: CameraLight, rows: RealArray[Any]) -> Rays:
     """The rays to a light from the points in some rows, as in `VisiblePoints.rows`; float64.
 
-    Departs: the rays to a light at infinity are parallel; the paper has no such light. Its cos(L) is 1
+    Departs: a light may be at infinity, with parallel rays; the paper has no such light. Its cos(L) is 1
     everywhere, so that concentration and cones leave all of it.
     """
     to_light = light.position[:, None] - rows[POINT]
@@ -161,8 +161,8 @@ def shares_of(light: CameraLight, rays: Rays) -> Iterator[tuple[str, RealArray[A
 def is_within(rays: Rays, cone_angle: float) -> Booleans:
     """Whether each point is within a cone: L <= A, with RIM and the rounding of cos(L). The rim is lit.
 
-    Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside. A cone of more than
-    90 degrees also lights behind the light if C = 0; otherwise cos^C(L) is 0 there.
+    Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside of the cone. A cone
+    of more than 90 degrees also lights behind the light if C = 0; otherwise cos^C(L) is 0 there.
     """
     assert rays.cos_light is not None
     within: Booleans = rays.cos_light >= least_cosine(cone_angle) - np.finfo(rays.cos_light.dtype).eps

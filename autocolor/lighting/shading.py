@@ -191,8 +191,8 @@ class LightMix(NamedTuple):
     """The weights of the ambient term and of the planes of each light that shines, relative to `scale`.
 
     The scale is the largest weight, and only the sum is multiplied by it. So lights k times as strong give
-    the same relative sum, and rounding changes no level. Departs: on surfaces to which a light is not linked,
-    its weights are 0. Its planes are computed on all surfaces, so that changing a link only costs the sum.
+    the same relative sum, and rounding changes no level. On surfaces to which a light is not linked, its
+    weights are 0. Its planes are computed on all surfaces, so that changing a link only costs the sum.
     """
 
     scale: float

@@ -62,10 +62,10 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> Bytes:
     blend weights the two colors and the level darkens the result, so that blending two equal colors changes
     nothing. With a blend of 1 there is no shift.
 
-    Departs: a ramp gives the colors of all levels by itself, without darkening or `floor`. Its colors are at
-    equal distances, the first at the lowest level and the last at the highest. Each component is linear
-    between two colors, and rounded half up, in whole numbers: a ramp of `levels` colors gives just these.
-    A single level has the first color.
+    A ramp gives the colors of all levels by itself, without darkening or `floor`. Its colors are at equal
+    distances, the first at the lowest level and the last at the highest. Each component is linear between two
+    colors, and rounded half up, in whole numbers: a ramp of `levels` colors gives just these. A single level
+    has the first color.
     """
     if paint.ramp is not None:
         return ramp_entries(paint.ramp, levels)

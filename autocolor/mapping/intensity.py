@@ -3,9 +3,9 @@
 Paper: "The Lighting Model": the unscaled intensities are mapped to integer intensities for the display. The
 minimum and the maximum intensity of each surface, or of the entire object, become the lowest and the highest
 level; nonlinear mappings can be tried. "Light Source Color Blending", Figure 11: a word is the first word of
-the surface's range plus the level. Departs: a scene can hold ranges of intensities, which then do not follow
-the picture, so that less light looks darker. With a percentage as exposure, the brightest pixels do not set a
-range, such as specks seen through a crack. Intensities beyond a range are shown as its nearest end.
+the surface's range plus the level. Departs: a scene can hold ranges of intensities, so that less light looks
+darker. Departs: with a percentage as exposure, the brightest pixels do not set a range, such as specks seen
+through a crack. Intensities beyond a range are shown as its nearest end.
 """
 
 from __future__ import annotations

@@ -8,9 +8,8 @@ ever, but its words stand for normals instead of levels:
 
 The intensity at a word's normal is mapped to a fraction of the range as ever, and the word's entry is the
 color that the paint has there. Assumed: the range that is mapped is the range of the bins of visible normals,
-which are finer than the words. Measured and rejected: the range of the words in use. A narrow highlight falls
-between the normals of words, now nearer to one and then farther, and the whole surface would become brighter
-and darker with that as a light moves: for N = 100 the mean error on a ball is up to 10 of 255 instead of 3.
+which are finer than the words. With the range of the words in use, a whole surface would become brighter and
+darker while a narrow highlight moves between the normals of its words.
 """
 
 from __future__ import annotations

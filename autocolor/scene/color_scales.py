@@ -4,10 +4,6 @@ viridis, plasma, inferno, magma and cividis are perceptually uniform: equal step
 large, and stay in order in a print without colors. turbo and rainbow have more distinguishable colors, but
 misleading steps. coolwarm and RdBu diverge from a light middle, for values around zero. zebra is black and
 white in turn, for lines of equal value, and shows how smooth a surface is.
-
-Measured and rejected: the `cmap` library, which has several hundred scales. Scenes must have the same colors
-everywhere, also where an optional package is not installed. The scales here take 2 kB, `cmap` 7.3 MB. A scene
-can have any other scale as a list of colors.
 """
 
 from __future__ import annotations

@@ -9,7 +9,8 @@ and the direction of a light that follows something are coordinates of a frame:
 
 A half-space that its light carries, like a barn door, is in the frame of the light: its origin is the light.
 Flaps stay in object coordinates. A light may be named "eye", and may follow others; but no light follows it,
-because `follows` = "eye" means the eye. Departs: the paper's lights are all fixed to the object.
+because `follows` = "eye" means the eye. Departs: a light may follow the eye, or what another light is aimed
+at; the paper's lights are fixed to the object.
 """
 
 from __future__ import annotations

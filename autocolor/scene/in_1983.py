@@ -1,8 +1,8 @@
 """A scene as General Motors could have shown it in 1983: what the paper describes, and nothing since.
 
-Departs: this program has interpolated normals on the surface, trimmed ranges of intensities, dither, other
-reflection models and more light controls, all of them in columns. Here they are set to what the paper has.
-Paints, scalars and the division of the words stay: they are data of the table.
+Departs: this program also has dither, other reflection models, trimmed ranges of intensities and more light
+controls, all of them in columns. Here they are set to what the paper has. Paints, scalars and the division of
+the words stay: they are data of the table.
 """
 
 from __future__ import annotations

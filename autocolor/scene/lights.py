@@ -58,8 +58,8 @@ Names = tuple[str, ...]
 class Flap(Row):
     """A range of one object coordinate outside of which a light has no effect, and a switch.
 
-    Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit. Departs: with an
-    edge width, the light rises from nothing at an end to full light at this distance inside.
+    Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit. With an edge
+    width, the light rises from nothing at an end to full light at this distance inside.
     """
 
     noun: ClassVar[str] = "flap"
@@ -188,8 +188,8 @@ class HalfSpace(Row):
 class Links(Row):
     """The surfaces and parts that a light shines on, by name; without names, it shines on everything.
 
-    Departs: the paper's lights shine on everything. A point is lit if the light shines on its surface and on
-    its part.
+    Departs: a light may shine on some surfaces and parts only; the paper's lights shine on everything. A
+    point is lit if the light shines on its surface and on its part.
     """
 
     noun: ClassVar[str] = "links"
@@ -299,7 +299,7 @@ class Light(Row):
         at_least=0,
         bar=BarRange(0, 100, 1),
         tier=Tier.LIGHT,
-        help="C: the exponent of the cosine of the angle from the direction; exact to 1e-4 up to 100,000.",
+        help="C: the exponent of the cosine of the angle from the direction.",
     )
     cone_angle: float | None = number(
         default=None,
@@ -320,8 +320,7 @@ class Light(Row):
         bar=BarRange(0, 90, 1),
         start=0.0,
         tier=Tier.LIGHT,
-        help="The angle of full light inside the cone; if absent, the cone is sharp. Edges are exact to 1e-4"
-        " from 0.1 degrees on.",
+        help="The angle of full light inside the cone; if absent, the cone is sharp.",
     )
     flaps: Flaps = nested(
         Flaps, default=Flaps(), tier=Tier.LIGHT, help="The ranges of object coordinates that are lit."
@@ -346,7 +345,7 @@ class Light(Row):
     at_infinity: bool = boolean(
         default=False,
         tier=Tier.LIGHT,
-        help="Whether its rays are parallel, as if it were infinitely far away.",
+        help="Whether its rays are parallel.",
     )
     follows: str | None = column_of(
         Reference("lights", EYE),

@@ -69,10 +69,10 @@ class SpecularGrowth(Row):
     """How S grows with the angle of incidence I: a factor of the specular plane, 1 at normal incidence.
 
     Paper: "The Lighting Model". For a more accurate rendering, S should be a function of the angle of
-    incidence as well as of the material. Departs: S is constant, as in Figure 2, unless a surface asks for
-    more. Then S is multiplied by F(I) / F(0), where F is a curve through points, or Schlick's F0 + (1 - F0)
-    (1 - cos(I))^5 (C. Schlick, Computer Graphics Forum, 1994). F0 is the share that the material reflects at
-    normal incidence: given, or ((n - 1) / (n + 1))^2 for its refractive index n.
+    incidence as well as of the material. Departs: S may grow with the angle of incidence; in Figure 2 it is
+    constant. If it grows, S is multiplied by F(I) / F(0), where F is a curve through points, or Schlick's F0
+    + (1 - F0) (1 - cos(I))^5 (C. Schlick, Computer Graphics Forum, 1994). F0 is the share that the material
+    reflects at normal incidence: given, or ((n - 1) / (n + 1))^2 for its refractive index n.
 
     F is divided by F(0) so that S means the same under every model, and light from straight ahead is
     reflected as without growth: with Schlick's F alone, the 0.04 of glass would leave no highlight there. The
@@ -172,7 +172,7 @@ class _PowerOfCosine(ReflectionModel):
         at_least=0,
         bar=BarRange(1, 200, 1),
         tier=Tier.LIGHT,
-        help="N: the exponent, which makes the highlight narrower; exact to 1e-4 up to 100,000.",
+        help="N: the exponent, which makes the highlight narrower.",
     )
 
     growth: SpecularGrowth = nested(
@@ -212,7 +212,7 @@ class Phong(_PowerOfCosine):
 
 @table_row
 class BlinnPhong(_PowerOfCosine):
-    """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
+    """cos^N of the angle between normal and half vector. Departs: J. Blinn's model of 1977, not Figure 2."""
 
     def specular(
         self, incidence: RealArray[Real], eye: RealArray[Real], view: RealArray[Real]
@@ -239,9 +239,9 @@ LEAST_SQUARE: Final = 1e-6
 class CookTorrance(ReflectionModel):
     """F D G / (N.V) over its value at normal incidence and view.
 
-    Departs: R. Cook and K. Torrance, SIGGRAPH 1981, not Figure 2: Beckmann's distribution D, whose slope m is
-    `roughness`; their geometric attenuation G; and their Fresnel term F for the index of refraction that
-    reflects `normal_reflectance`, F0, at normal incidence.
+    Departs: the model of R. Cook and K. Torrance, SIGGRAPH 1981, not Figure 2. It has Beckmann's distribution
+    D, whose slope m is `roughness`; their geometric attenuation G; and their Fresnel term F for the index of
+    refraction that reflects `normal_reflectance`, F0, at normal incidence.
     """
 
     roughness: float = number(
@@ -250,7 +250,7 @@ class CookTorrance(ReflectionModel):
         at_most=1,
         bar=BarRange(0.01, 1, 0.01),
         tier=Tier.LIGHT,
-        help="The roughness: m, the slope of the microfacets; exact to 1e-4 from 0.02.",
+        help="The roughness: m, the slope of the microfacets.",
     )
     normal_reflectance: float = number(
         default=0.05,

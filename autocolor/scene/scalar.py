@@ -125,7 +125,7 @@ class Scalar(Row):
         ScaleKind(),
         default="viridis",
         tier=Tier.ENTRIES,
-        help="The color scale: a name, or a list of colors.",
+        help="The color scale.",
     )
     bands: int = column_of(
         Whole(2, MOST_BANDS),
@@ -160,8 +160,8 @@ class Scalar(Row):
         PlaceKind(),
         default=None,
         tier=Tier.NOTHING,
-        help="The place of the legend from left to right and from top to bottom, 0 to 1; if absent, the"
-        " corner where it hides least.",
+        help="The place of the legend, from the left and from the top; if absent, the corner where it hides"
+        " least.",
     )
     surfaces: tuple[str, ...] | None = column_of(
         References("surfaces"),

@@ -138,8 +138,7 @@ class Scene(Row):
         default=AUTO,
         unit="intensity",
         tier=Tier.LEVELS,
-        help="Whether intensity ranges are automatic, of all pixels or a percentage without the brightest, or"
-        " fixed: by surface, and for all other surfaces.",
+        help="Whether intensity ranges follow the picture, leave out its brightest pixels, or are fixed.",
     )
     dither: str = one_of(
         ("off", "ordered"),
@@ -151,7 +150,7 @@ class Scene(Row):
         ("covered", "equal"),
         default="covered",
         tier=Tier.LEVELS,
-        help="Whether surfaces get more levels the more of the picture they cover, or all the same number.",
+        help="Whether surfaces that cover more of the picture get more levels, or all the same number.",
     )
     words: str = one_of(
         (LEVELS, NORMALS),
@@ -163,8 +162,8 @@ class Scene(Row):
         INTERPOLATIONS,
         default=SCAN_LINE,
         tier=Tier.FRAME,
-        help="Whether normals are interpolated along scan lines on the surface, in quads as two triangles,"
-        " unchanged as the camera rolls, or along scan lines in the picture, as in 1983.",
+        help="Whether normals are interpolated along scan lines, in triangles, which look the same as the"
+        " camera rolls, or linearly in the picture, as in 1983.",
     )
     background: Color = color(
         default=(0, 0, 0), tier=Tier.ENTRIES, help="The color where nothing is visible."

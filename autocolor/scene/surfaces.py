@@ -106,8 +106,8 @@ class Reflectance(Row):
 class Paint(Row):
     """The two colors of a surface and how they blend; or a ramp, which gives the color of every level.
 
-    Paper: "Light Source Color Blending", Figure 12. Departs: a ramp is an alternative to the two colors and
-    their blend, which have their defaults beside it.
+    Paper: "Light Source Color Blending", Figure 12. Departs: a ramp of colors may replace the two colors and
+    their blend, which then have their defaults.
     """
 
     alternatives: ClassVar[tuple[tuple[str, ...], ...]] = (

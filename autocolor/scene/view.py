@@ -88,8 +88,7 @@ class View(Row):
         unit="degrees",
         bar=BarRange(5, 120, 1),
         tier=Tier.FRAME,
-        help="The vertical field of view of a picture of 4:3 or wider; a narrower picture has the horizontal"
-        " field of view of 4:3.",
+        help="The vertical field of view at 4:3 and wider; narrower pictures have the horizontal one of 4:3.",
     )
 
     def rules(self) -> Iterator[Problem]:

@@ -20,6 +20,12 @@ WHEEL: Final = "wheel"
 DRAG: Final = "drag"
 """The kinds of sources of edits by the pointer. The wheel has steps, but no beginning and no end."""
 
+EditSource = tuple[object, object]
+"""A key or a movement of the pointer that made an edit: its kind, and which of them it was."""
+
+NO_SOURCE: Final[EditSource] = None, None
+"""The source of actions that begin nothing that could be continued."""
+
 
 class Action:
     """The last action of a session: the key or movement that made its edit, and when.
@@ -29,22 +35,13 @@ class Action:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._source: object = None
-        """The key or the movement of the pointer that made the last edit; None if there is none."""
+        self.source = NO_SOURCE
+        """The key or the movement of the pointer that made the last edit, if any."""
         self._edited_at = 0.0
         self.costs = Tier.NOTHING
         """The cost of the edit; NOTHING if the action was no edit."""
         self.is_warned = False
         """Whether the action announced unsaved changes."""
-
-    def was_by(self, source: object) -> bool:
-        """Whether this key or movement made the last edit."""
-        return self._source == source
-
-    @property
-    def kind(self) -> object:
-        """The kind of key or movement that made the last edit: the first part of its source."""
-        return self._source[0] if isinstance(self._source, tuple) else None
 
     @property
     def has_rested(self) -> bool:
@@ -60,7 +57,7 @@ class Action:
         self._session.warn(f"{unsaved}, {otherwise}")
         return True
 
-    def do(self, source: object, run: Callable[[], object], continues: bool, moving: bool) -> bool:
+    def do(self, source: EditSource, run: Callable[[], object], continues: bool, moving: bool) -> bool:
         """Run the action of a key or a gesture; returns False if `run` does, which then did nothing.
 
         With `continues`, edits of the same source are one step to undo.
@@ -68,7 +65,7 @@ class Action:
         session, warned = self._session, self.is_warned
         news, before = session.news, session.scene
         session.tell("")
-        session.same_step = continues and self._source == source
+        session.same_step = continues and self.source == source
         session.moving = moving
         self.costs = Tier.NOTHING
         try:
@@ -87,7 +84,7 @@ class Action:
             session.comparing.end()
             costs = cost_of_edit(before, session.scene)
         if costs is not None:
-            self._source, self._edited_at, self.costs = source, time.monotonic(), costs
+            self.source, self._edited_at, self.costs = source, time.monotonic(), costs
         elif not continues:
-            self._source = None
+            self.source = NO_SOURCE
         return True

@@ -26,35 +26,14 @@ from autocolor.screens.message_line import (
     offer_button,
 )
 from autocolor.screens.screen import Content, Handle, Sample, Screen, Surroundings, surface_at
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.session import LEAST_SECONDS, PICTURE, Session
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import (
-    BLACK,
-    NIGHT,
-    ORANGE,
-    WHITE,
-    WIDTH,
-    Item,
-    filled,
-)
+from autocolor.widgets.items import BLACK, NIGHT, ORANGE, WHITE, WIDTH, Item, filled
 from autocolor.widgets.letters import PANEL as LETTER_PANEL
 from autocolor.widgets.letters import letter_panel
-from autocolor.widgets.menu import (
-    MENU,
-    STRIP,
-    Section,
-    menu_items,
-)
+from autocolor.widgets.menu import MENU, STRIP, Section, menu_items
 from autocolor.widgets.sheet import Page
-from autocolor.widgets.widget import (
-    NOWHERE,
-    Button,
-    Choice,
-    Entry,
-    Gap,
-    Place,
-    Widget,
-)
+from autocolor.widgets.widget import Button, Choice, Entry, Gap, Place, Widget
 
 HIDDEN: Final = "the panels are hidden: H shows them again, or the last row of the menu at the right edge"
 """The message that says how hidden panels come back."""
@@ -78,10 +57,10 @@ class Board:
         self.held: Handle | None = None
         """The handle that was picked; the next pick places it."""
         self._shown = session.screen
-        self._lit, self._lit_area = "", NOWHERE
-        """The key and the area of the widget that is lit."""
-        self._folded: tuple[Place, str] | None = None
-        """Where a section was picked last, and its key, until the pointer moves."""
+        self._lit: Widget | None = None
+        """The widget that is lit, as it was when it was pointed at."""
+        self._folded: tuple[Place, Widget] | None = None
+        """Where a section was picked last, and the section, until the pointer moves."""
         self._message: list[Item] = []
         """The message on the page; it covers the screen below it."""
         self._grabbed: Widget | Handle | Screen | None = None
@@ -127,29 +106,22 @@ class Board:
         if self._layout is None or self._layout[0] != state:
             letters = letter_panel(self.typing.key) if by_letters else ()
             over = (*letters, *(() if self.hides_panels else self.over()))
-            content = self.screen.build(self._surroundings(has_menu, over))
+            above = [*((MENU, STRIP) if has_menu else ()), *(each.area for each in (*over, *self._message))]
+            pointer = Place(-1, -1) if any(area.has(*self.pointer) for area in above) else self.pointer
+            lit = "" if self._lit is None else self._lit.key
+            content = self.screen.build(Surroundings(has_menu, not self.hides_panels, lit, pointer))
             last = [*last_rows(session, self.screen), *self._hiding_rows(content)]
             rows = self.menu.rows(session.screen, content.rows(), last) if has_menu else ()
             offer = offer_button(session.news.offer) if session.has_news and not self.typing.is_on else None
             strip = strip_of(session, self.screens.values()) if has_menu else ()
-            self._layout = (
-                state,
-                Layout(content, rows, strip, over, offer, self.menu.opened, self.menu.list_of),
-            )
+            layout = Layout(content, rows, strip, over, offer, *self.menu.opened_of(rows))
+            self._layout = state, layout
         return self._layout[1]
 
     @property
     def content(self) -> Content:
         """The content of the screen that is shown."""
         return self.layout.content
-
-    def _surroundings(self, has_menu: bool, over: Sequence[Widget]) -> Surroundings:
-        """The menu, the panels and the pointer, for the screen that is shown."""
-        message = (item.area for item in self._message)
-        above = (*((MENU, STRIP) if has_menu else ()), *(widget.area for widget in over), *message)
-        is_covered = any(area.has(*self.pointer) for area in above)
-        pointer = Place(-1, -1) if is_covered else self.pointer
-        return Surroundings(has_menu, not self.hides_panels, self._lit, pointer)
 
     def forget(self) -> None:
         """Make the layout anew when it is needed, because the scene or the screen may have changed."""
@@ -166,7 +138,7 @@ class Board:
     def _close_list(self) -> None:
         """Take the wide bar or the list away."""
         if self.menu.has_focus and self.layout.listed is not None:
-            self._lit, self._lit_area = self.menu.opened, NOWHERE
+            self._lit = self.layout.opened_row
         self.menu.opened = ""
 
     # Hiding.
@@ -215,12 +187,12 @@ class Board:
         self.release()
         self.screens[self._shown].leave()
         self._shown, self.hides_panels = wanted, False
-        self._light(None)
+        self._lit = None
         self.menu.begin()
         self.screens[wanted].enter()
         # Without a menu beside it, the screen itself must say what to do, and the way back.
         screen = self.screen
-        is_reached_by_menu = screen.word and screen.name != PICTURE
+        is_reached_by_menu = (screen.word or screen.shows_picture) and screen.name != PICTURE
         if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
             self.session.tell(f"{screen.help}; the right edge: the menu")
         return True
@@ -240,18 +212,7 @@ class Board:
         self.pointer = Place(gesture.element, gesture.line)
         getattr(self, f"_{gesture.kind}")(gesture)
         if hint and hint != self._hint():
-            self.session.shorten_news()
-
-    def point_at(self, gesture: Gesture) -> None:
-        """Move the pointer to the place of a gesture, and do nothing else."""
-        self.pointer = Place(gesture.element, gesture.line)
-        self._hover(gesture)
-
-    def clear(self) -> None:
-        """Take the menu, the pointer and its hint away."""
-        self.pointer = Place(-1, -1)
-        self._light(None)
-        self.close()
+            self.session.news = self.session.news._replace(seconds=LEAST_SECONDS)
 
     def release(self) -> None:
         """Let go of a grabbed or picked thing, and end typing."""
@@ -264,13 +225,10 @@ class Board:
                 each.let_go()
         self.held = self._grabbed = None
 
-    def _light(self, widget: Widget | None) -> None:
-        self._lit, self._lit_area = ("", NOWHERE) if widget is None else (widget.key, widget.area)
-
     @property
     def lit(self) -> Widget | None:
         """The widget that is lit: under the pointer, or reached by keys."""
-        return self.layout.lit(self._lit, self._lit_area)
+        return None if self._lit is None else self.layout.now(self._lit)
 
     def _hover(self, gesture: Gesture) -> None:
         element, line = self.pointer
@@ -286,9 +244,8 @@ class Board:
             if self.menu.is_open and not was_open and self.session.news.persistent:
                 # Beside the menu, hints stand in its place.
                 self.session.tell("")
-        widget = self.layout.widget_at(element, line)
-        self._light(widget)
-        if widget is None:
+        self._lit = self.layout.widget_at(element, line)
+        if self._lit is None:
             self.menu.has_focus = False
 
     def _pick(self, gesture: Gesture) -> None:
@@ -300,10 +257,10 @@ class Board:
             return
         if self._folded is not None:
             # The second of two clicks at one place must not fall on a row that came there.
-            widget = self.layout.lit(self._folded[1], NOWHERE) or widget
+            widget = self.layout.now(self._folded[1]) or widget
         if widget is not None:
             self._let_go()
-            self._folded = (self.pointer, widget.key) if isinstance(widget, Section) else None
+            self._folded = (self.pointer, widget) if isinstance(widget, Section) else None
             self.pick_widget(widget, self.pointer)
         elif self.is_covered(element, line):
             return
@@ -338,12 +295,12 @@ class Board:
         by_key = place is None
         if place is None:
             place = Place((widget.area.left + widget.area.right) // 2, widget.area.top)
-        self.menu.use(self.session.screen, widget, self.layout.rows)
+        self.menu.use(self.session.screen, widget)
         is_switched = isinstance(widget, Bar) and widget.is_switched_at(place)
         if opens(widget) and MENU.covers(widget.area) and not is_switched:
             self.menu.open_or_close(widget)
             if by_key and self.layout.listed is not None:
-                self._light(self.layout.listed.chosen)
+                self._lit = self.layout.listed.chosen
         elif isinstance(widget, Entry):
             self.typing.begin(widget)
         else:
@@ -353,14 +310,13 @@ class Board:
         self._let_go()
         self._start = self._last = gesture
         self._leaves_list()
-        widget = self.layout.widget_at(*self.pointer)
-        self._light(widget)
+        self._lit = widget = self.layout.widget_at(*self.pointer)
         # Modifiers and the middle button are for the screen.
         is_plain = not gesture.shift and not gesture.control and gesture.button != MIDDLE
         handle = self.handle_at(*self.pointer) if is_plain else None
         if widget is not None:
             self._grabbed = None if widget.why_not else widget
-            self.menu.use(self.session.screen, widget, self.layout.rows)
+            self.menu.use(self.session.screen, widget)
         elif handle is not None:
             self._grabbed = handle
             # A handle comes to the pointer, but a handle that was grabbed at its sign stays away from it.
@@ -375,7 +331,8 @@ class Board:
         last, self._last = self._last, gesture
         if isinstance(self._grabbed, Widget):
             # The scene has changed since the grab, and the widget may be gone.
-            self._grabbed = self.layout.now(self._grabbed)
+            area, now = self._grabbed.area, self.layout.now(self._grabbed)
+            self._grabbed = now.at(area) if type(now) is type(self._grabbed) else None
             if self._grabbed is not None:
                 start = Place(self._start.element, self._start.line)
                 self._grabbed.drag(start, Place(last.element, last.line), self.pointer)
@@ -392,7 +349,7 @@ class Board:
         widget = self.layout.widget_at(*self.pointer)
         if widget is not None:
             if not widget.why_not:
-                self.menu.use(self.session.screen, widget, self.layout.rows)
+                self.menu.use(self.session.screen, widget)
                 widget.nudge(gesture.steps)
         elif not self.is_covered(*self.pointer):
             self.content.wheel(gesture)
@@ -442,7 +399,7 @@ class Board:
         if name in ("up", "down"):
             self._move_light(1 if name == "down" else -1)
         elif row is not None and name in ("left", "right") and not row.why_not:
-            self.menu.use(self.session.screen, row, self.layout.rows)
+            self.menu.use(self.session.screen, row)
             row.nudge(1 if name == "right" else -1)
         elif row is not None and name in ("return", "space", "enter"):
             self.pick_widget(row)
@@ -457,7 +414,7 @@ class Board:
         rows = [each for each in shown if not isinstance(each, Gap)]
         if rows:
             start = next((n for n, each in enumerate(rows) if each is lit), -1 if step > 0 else 0)
-            self._light(rows[(start + step) % len(rows)])
+            self._lit = rows[(start + step) % len(rows)]
 
     # The page.
 
@@ -517,11 +474,7 @@ class Board:
         if self.layout.rows:
             return True
         element, line = self.pointer
-        if (
-            self._grabbed is not None
-            or line >= MESSAGE.top
-            or self.layout.widget_at(element, line) is not None
-        ):
+        if self.is_dragging or line >= MESSAGE.top or self.layout.widget_at(element, line) is not None:
             return False
         handle = self.held or self.handle_at(element, line)
         if handle is not None:

@@ -16,13 +16,12 @@ class Cached(Generic[Value]):
     """
 
     def __init__(self) -> None:
-        self._sources: tuple[object, ...] | None = None
+        self._sources: tuple[object, ...] = (self,)
         self._value: Value
 
     def of(self, compute: Callable[[], Value], *sources: object) -> Value:
         """The value of some sources, computed if one of them is another object than before."""
-        cached = self._sources
-        if cached is None or len(cached) != len(sources) or not all(map(is_, cached, sources)):
+        if len(self._sources) != len(sources) or not all(map(is_, self._sources, sources)):
             self._value = compute()
             self._sources = sources
         return self._value

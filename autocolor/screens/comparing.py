@@ -39,9 +39,10 @@ class Comparing:
         self._chosen: NamedScene | None = None
         self._in_view: Cached[Scene] = Cached()
         """The other scene in the present view."""
-        self._image: Cached[DisplayImage] = Cached()
+        self._images: Cached[DisplayImage] = Cached()
         """The image of the other scene, computed once for a pair of scenes."""
-        self._shown: DisplayImage | None = None
+        self.image: DisplayImage | None = None
+        """The image that is shown in place of the present state; None while comparing is off."""
 
     @property
     def other(self) -> NamedScene | None:
@@ -78,14 +79,9 @@ class Comparing:
         return None if self.other is None else self._image_of(self.other.scene)
 
     @property
-    def image(self) -> DisplayImage | None:
-        """The image that is shown in place of the present state; None while comparing is off."""
-        return self._shown
-
-    @property
     def is_on(self) -> bool:
         """Whether another state is shown."""
-        return self._shown is not None
+        return self.image is not None
 
     def begin(self) -> str:
         """Show the other state; returns its name. Raises UsageError if there is none."""
@@ -94,14 +90,14 @@ class Comparing:
             raise UsageError(
                 "to compare, there must be a step to undo or a kept variant; edit something first"
             )
-        self._shown = self._image_of(other.scene)
+        self.image = self._image_of(other.scene)
         return other.name
 
     def end(self) -> bool:
         """Show the present state again; returns False if it was shown."""
-        was_on, self._shown = self.is_on, None
+        was_on, self.image = self.is_on, None
         return was_on
 
     def _image_of(self, other: Scene) -> DisplayImage:
         self._studio.refine()
-        return self._image.of(lambda: self._studio.image_of(other), self._studio.scene, other)
+        return self._images.of(lambda: self._studio.image_of(other), self._studio.scene, other)

@@ -87,8 +87,11 @@ def reason_of_no_change(studio: Studio, edited: Sequence[tuple[Light | None, Lig
     return "no point that is seen gets another level"
 
 
-def ranges_of(image: DisplayImage) -> dict[str, tuple[float, float]]:
-    """The ranges of intensities that an image maps, by the names of surfaces, as an exposure holds them."""
+def ranges_to_hold(image: DisplayImage) -> dict[str, tuple[float, float]]:
+    """The ranges of intensities that an image maps, by the names of surfaces, as an exposure holds them.
+
+    A surface without a range of its own is mapped by the object's.
+    """
     scene = image.scene
     held = held_exposure(image.mapped, scene.scaling, scene.exposure, stage_surfaces(scene))
     return {} if isinstance(held, str) else dict(held)
@@ -99,7 +102,7 @@ def growth(before: DisplayImage, now: DisplayImage) -> float:
 
     A ratio below 1 is a loss. It is 1 if the ranges are held.
     """
-    olds, news = ranges_of(before), ranges_of(now)
+    olds, news = ranges_to_hold(before), ranges_to_hold(now)
     ratios = [news[name][1] / high for name, (_, high) in olds.items() if name in news and high > 0]
     return max((ratio for ratio in ratios if ratio > 0), key=lambda ratio: abs(math.log(ratio)), default=1.0)
 
@@ -133,5 +136,5 @@ def tell_effect(session: Session) -> bool:
 
 def hold_ranges(session: Session, image: DisplayImage) -> None:
     """Hold the ranges of an image before the last edits, as one step, so that less light is darker."""
-    session.edit(session.scene.replace(exposure=tuple(ranges_of(image).items())))
+    session.edit(session.scene.replace(exposure=ranges_to_hold(image)))
     session.tell("all ranges are held as before the edit: less light is darker")

@@ -11,7 +11,7 @@ import numpy as np
 from autocolor.arrays import Words
 from autocolor.mapping.ranges import BACKDROP, BACKGROUND, SCREENS, WORDS, LevelRange
 from autocolor.screens.screen import Content, Screen, Surroundings
-from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, YELLOW, Item, fitted, text
+from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, YELLOW, fitted, text
 
 SIDE: Final = 32
 CELL_WIDTH: Final = WIDTH // SIDE
@@ -22,19 +22,16 @@ MARGIN: Final = 3
 @lru_cache(maxsize=1)
 def cell_words(ranges: tuple[LevelRange, ...]) -> Words:
     """The page, (480, 640) uint16: a cell is filled with its word. Equal ranges give the same array."""
-    words = np.arange(WORDS, dtype=np.uint16).reshape(SIDE, SIDE)
-    owners = np.zeros(WORDS, np.intp)
+    words = np.arange(WORDS, dtype=np.uint16)
+    owners = np.zeros(WORDS, np.uint16)
     for number, (first, levels) in enumerate([*ranges, SCREENS, LevelRange(BACKGROUND, 1)], start=1):
         owners[first : first + levels] = number
-    owner = owners.reshape(SIDE, SIDE)
-    page = words.repeat(CELL_HEIGHT, axis=0).repeat(CELL_WIDTH, axis=1)
-    # Draw the outlines: mark both pixels wherever neighboring pixels have different owners.
-    owner = owner.repeat(CELL_HEIGHT, axis=0).repeat(CELL_WIDTH, axis=1)
-    columns_differ, rows_differ = owner[:, 1:] != owner[:, :-1], owner[1:] != owner[:-1]
-    page[:, 1:][columns_differ] = YELLOW
-    page[:, :-1][columns_differ] = YELLOW
-    page[1:][rows_differ] = YELLOW
-    page[:-1][rows_differ] = YELLOW
+    pages = (each.reshape(SIDE, SIDE) for each in (words, owners))
+    page, owner = (each.repeat(CELL_HEIGHT, axis=0).repeat(CELL_WIDTH, axis=1) for each in pages)
+    # Draw the outlines: mark each pixel that has a neighbor of another owner.
+    around = np.pad(owner, 1, "edge")
+    neighbors = around[1:-1, :-2], around[1:-1, 2:], around[:-2, 1:-1], around[2:, 1:-1]
+    page[np.any([each != owner for each in neighbors], axis=0)] = YELLOW
     return page
 
 
@@ -67,20 +64,10 @@ class EntriesScreen(Screen):
     shows_scene = False
 
     def build(self, around: Surroundings) -> Content:
-        ranges = self._ranges
-        return Content(base=cell_words(tuple(ranges.values())), items=entries_items(ranges))
-
-    @property
-    def _ranges(self) -> Mapping[str, LevelRange]:
-        """The level ranges, and the words of the backdrop."""
         backdrop = {"backdrop": BACKDROP} if self.session.scene.has_backdrop else {}
-        return {**backdrop, **self.session.studio.level_ranges}
-
-
-def entries_items(ranges: Mapping[str, LevelRange]) -> list[Item]:
-    """The names of the ranges in their cells."""
-    return [
-        text(name, column * CELL_WIDTH + MARGIN, row * CELL_HEIGHT + MARGIN, WHITE, BLACK)
-        for name, row, column in named_cells(ranges)
-        if name
-    ]
+        ranges = {**backdrop, **self.session.studio.level_ranges}
+        names = [
+            text(name, column * CELL_WIDTH + MARGIN, row * CELL_HEIGHT + MARGIN, WHITE, BLACK)
+            for name, row, column in named_cells(ranges)
+        ]
+        return Content(base=cell_words(tuple(ranges.values())), items=names)

@@ -14,9 +14,7 @@ from autocolor.files.paths import file_stem, free_path, is_example
 from autocolor.files.rig_file import RIG_SUFFIX, read_rig, write_rig
 from autocolor.files.stamps import look_at
 from autocolor.files.state import note_file
-from autocolor.images import save_image as save_image_of
 from autocolor.journal.autosave import Autosave, newest_session
-from autocolor.scene.scene import Scene
 from autocolor.screens.session import MIXING, PICTURE, Session
 from autocolor.sending import shown_colors
 from autocolor.widgets.items import fitted
@@ -138,13 +136,6 @@ def save_rig(session: Session) -> None:
     path = free_path(shown_folder(session) / f"{file_stem(session.scene.name)}-rig{RIG_SUFFIX}")
     write_rig(path, session.scene)
     session.tell(f"saved {path.name}")
-
-
-def export(session: Session, scene: Scene, name: str, size: tuple[int, int], smooth: int) -> Path:
-    """Save the picture of a scene at a size as a new PNG file of a name, with a smoothness."""
-    path = free_path(shown_folder(session) / f"{name}.png")
-    save_image_of(path, scene, size=size, smooth=smooth)
-    return path
 
 
 def save_image(session: Session) -> None:

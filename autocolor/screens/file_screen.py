@@ -9,7 +9,7 @@ pointer is on it, in place of the examples.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
@@ -20,28 +20,28 @@ from typing import ClassVar, Final, NamedTuple
 from autocolor.errors import AutocolorError, InputError
 from autocolor.files.meshes.repair import UPS
 from autocolor.files.opening import FOLDER, RIG, kind_of, openables_of
-from autocolor.files.paths import SCENE_FILE, example_scenes, file_stem
+from autocolor.files.paths import SCENE_FILE, example_scenes, file_stem, free_path
 from autocolor.files.state import recent_files
 from autocolor.images import LARGEST, SMOOTHNESS, SMOOTHNESSES, size_of
+from autocolor.images import save_image as save_image_of
 from autocolor.journal.autosave import left_sessions, written_at
 from autocolor.journal.saving import free_name
 from autocolor.rendering import SIZE
 from autocolor.scene.scene import Scene
 from autocolor.screens.file_actions import (
     check_reach,
-    export,
     may_reach,
     open_file,
     recover,
     save,
     save_image,
     save_rig,
+    shown_folder,
 )
 from autocolor.screens.gallery import (
     FRAME,
     LINES,
     NAME_LINES,
-    NO_PICTURE,
     TILE_ELEMENTS,
     TILE_LINES,
     Gallery,
@@ -52,19 +52,8 @@ from autocolor.screens.gallery import (
 from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, NIGHT, SLATE, YELLOW, Area, Item, fitted, text
-from autocolor.widgets.menu import WORK, laid_out
-from autocolor.widgets.widget import (
-    MARGIN,
-    ROW_LINES,
-    TEXT_DOWN,
-    Button,
-    Choice,
-    Entry,
-    Gap,
-    Pair,
-    Widget,
-    page_choice,
-)
+from autocolor.widgets.menu import WORK, laid_out, paged
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Entry, Gap, Pair, Widget
 
 LEFT: Final = Area(7, WORK.top + 40, 247, WORK.bottom - 8)
 """The column of the folder's files."""
@@ -109,7 +98,6 @@ WITHOUT_PICTURE: Final = (FOLDER, RIG, "paints")
 FOLDER_LETTERS: Final = 36
 """Letters of the folder in a hint."""
 
-MONTHS: Final = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 LONGEST_DATE: Final = 6
 LONGEST_KIND: Final = 7
 """Letters of a date, and of a kind."""
@@ -117,7 +105,6 @@ LONGEST_KIND: Final = 7
 SIZES: Final = (SIZE, (1920, 1080), (3840, 2160))
 """The sizes of exported images that can be pointed at."""
 
-TICKS_TO_EXPORT: Final = 2
 TICKS_TO_REST: Final = 6
 """Assumed: so many ticks after the pointer came to a row, it rests there: a tenth of a second."""
 
@@ -155,11 +142,10 @@ class FileScreen(Screen):
         self._left: Sequence[str] = ()
         """The date of the last session that was not closed; empty without such a session."""
         self._pages = {"": 0, RECENT: 0}
-        self._gallery = Gallery[Hashable]()
+        self._gallery = Gallery()
         self._size, self._smooth = SIZE, SMOOTHNESS
-        self._exports: list[tuple[str, Scene]] = []
-        """The names and the scenes of the images that are still to be exported."""
-        self._ticks_to_export = self._count = 0
+        self._exports: Iterator[bool] = iter(())
+        """The steps that export the remaining images."""
         self._lit, self._rested = "", 0
         """The row under the pointer, and for how many ticks the pointer has been on it."""
 
@@ -171,8 +157,8 @@ class FileScreen(Screen):
             self.session.warn(error)
 
     def leave(self) -> None:
-        while self._exports:
-            self._export()
+        for _ in self._exports:
+            pass
         self._gallery.keep([self._key(each, 1) for each in (*self._recent, *self._examples)])
 
     def _look_up(self) -> None:
@@ -241,20 +227,15 @@ class FileScreen(Screen):
 
     def _paged(self, files: Sequence[File], name: str, size: int) -> tuple[Sequence[File], list[Widget]]:
         """The files of the present page of a list, and the row that turns to others, if there are any."""
-        pages = [files[first : first + size] for first in range(0, len(files), size)] or [files]
-        page = min(self._pages[name], len(pages) - 1)
         help = "A click turns to the next page of files; at the left end, to the page before."
-        turning = page_choice(help, page, len(pages), partial(self._pages.__setitem__, name), within=name)
-        return pages[page], [turning] if len(pages) > 1 else []
+        turn = partial(self._pages.__setitem__, name)
+        return paged(files, size, self._pages[name], help, turn, within=name)
 
     def _row(self, file: File, shown: str) -> Widget:
         path, kind, changed = file
-        if kind == FOLDER:
-            help, run = f"Look into {self.session.shown(path)}", partial(self._go_to, path)
-        else:
-            help, run = f"Open {self.session.shown(path)}", partial(self._open, path)
-        date = short_date(changed) if changed else ""
-        return FileRow(str(path), help, run=run, value=kind, shown=shown, date=date)
+        verb, run = ("Look into", self._go_to) if kind == FOLDER else ("Open", self._open)
+        help, date = f"{verb} {self.session.shown(path)}", short_date(changed) if changed else ""
+        return FileRow(str(path), help, run=partial(run, path), value=kind, shown=shown, date=date)
 
     def _tile(self, file: File, area: Area, within: str, times: int = 1) -> Tile:
         path, as_example = file.path, within == EXAMPLE
@@ -268,23 +249,17 @@ class FileScreen(Screen):
         return file, times, self.session.mesh_up
 
     def _small_picture(self, file: File, times: int) -> Small:
-        if not may_reach(self.session, file.path):
-            return NO_PICTURE
+        check_reach(self.session, file.path, "a file to open")
         return small_picture_of_file(file.path, file.kind, self.session.mesh_up, times)
 
     def _idle(self, wanted: Sequence[tuple[File, int]], lit: str) -> bool:
-        """Export an image, or make a small picture, once the pointer rests."""
+        """Go on exporting, or make a small picture once the pointer rests."""
         self._rested = self._rested + 1 if lit == self._lit else 0
         self._lit = lit
-        if not self._exports:
-            pictures = {self._key(*each): partial(self._small_picture, *each) for each in wanted}
-            return self._rested >= TICKS_TO_REST and self._gallery.advance(pictures)
-        # A window shows the message after the first tick.
-        self._ticks_to_export -= 1
-        if not self._ticks_to_export:
-            self._export()
+        if next(self._exports, False):
             return True
-        return False
+        pictures = {self._key(*each): partial(self._small_picture, *each) for each in wanted}
+        return self._rested >= TICKS_TO_REST and self._gallery.advance(pictures)
 
     # The menu.
 
@@ -412,32 +387,30 @@ class FileScreen(Screen):
         self._size = size_of(text.strip())
 
     def _begin_export(self, scenes: Mapping[str, Scene]) -> None:
-        """Export images of scenes while nothing moves, named after the present scene and their own names."""
-        stem = file_stem(self.session.scene.name)
-        self._exports = [(f"{stem}-{file_stem(each)}" if each else stem, scenes[each]) for each in scenes]
-        self._count = len(scenes)
-        self._announce_export()
+        """Begin to export images of scenes; the first message is shown at once."""
+        self._exports = self._export(scenes)
+        next(self._exports)
 
-    def _announce_export(self) -> None:
-        self._ticks_to_export = TICKS_TO_EXPORT
-        (name, _), *others = self._exports
-        more = f", then {len(others)} more" if others else ""
-        size = written_size(self._size)
-        self.session.tell(f"exporting {name}, {size}, smoothness {self._smooth}{more} ...", persistent=True)
-
-    def _export(self) -> None:
-        """Export the next image; a message says its name, or why there is none."""
-        (name, scene), *self._exports = self._exports
-        try:
-            path = export(self.session, scene, name, self._size, self._smooth)
-        except AutocolorError as error:
-            self._exports = []
-            self.session.warn(error)
-            return
-        of = f", the last of {self._count}" if self._count > 1 else ""
-        self.session.tell(f"saved {path.name}{of}: {written_size(self._size)}, smoothness {self._smooth}")
-        if self._exports:
-            self._announce_export()
+    def _export(self, scenes: Mapping[str, Scene]) -> Iterator[bool]:
+        """Export images, named after the present scene and their own names. Messages say what is done."""
+        session, size, smooth, count = self.session, self._size, self._smooth, len(scenes)
+        stem, how = file_stem(session.scene.name), f"{written_size(size)}, smoothness {smooth}"
+        for number, (own, scene) in enumerate(scenes.items(), start=1):
+            name = f"{stem}-{file_stem(own)}" if own else stem
+            more = f", then {count - number} more" if number < count else ""
+            session.tell(f"exporting {name}, {how}{more} ...", persistent=True)
+            # A window shows the message after the first tick.
+            yield True
+            yield True
+            try:
+                path = free_path(shown_folder(session) / f"{name}.png")
+                save_image_of(path, scene, size=size, smooth=smooth)
+            except AutocolorError as error:
+                session.warn(error)
+                break
+            of = f", the last of {count}" if count > 1 else ""
+            session.tell(f"saved {path.name}{of}: {how}")
+        yield True
 
 
 def written_size(size: tuple[int, int]) -> str:
@@ -459,7 +432,7 @@ def short_date(seconds: float, now: float | None = None) -> str:
         return ""
     if then.date() == today.date():
         return f"{then:%H:%M}"
-    return f"{then.day} {MONTHS[then.month - 1]}" if then.year == today.year else str(then.year)
+    return f"{then.day} {then:%b}" if then.year == today.year else str(then.year)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Generic, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -73,25 +73,28 @@ class Small(NamedTuple):
 NO_PICTURE: Final = Small(None, "no picture")
 
 
-Key = TypeVar("Key", bound=Hashable)
-
-
-class Gallery(Generic[Key]):
+class Gallery:
     """The small pictures of a screen, by their keys."""
 
     def __init__(self) -> None:
         self.loads: Sequence[tuple[int, Bytes]] = ()
         """The entries that the pictures borrow."""
-        self._small: dict[Key, Small] = {}
-        self._words: dict[Key, Words] = {}
+        self._small: dict[Hashable, Small] = {}
+        self._words: dict[Hashable, Words] = {}
         """The words of the pictures that are shown."""
-        self._items: dict[tuple[Key, Area], Item] = {}
+        self._items: dict[tuple[Hashable, Area], Item] = {}
 
-    def advance(self, wanted: Mapping[Key, Callable[[], Small]]) -> bool:
-        """Make the next of the wanted pictures, and show those that are made; False if nothing is left."""
+    def advance(self, wanted: Mapping[Any, Callable[[], Small]]) -> bool:
+        """Make the next of the wanted pictures, and show those that are made; False if nothing is left.
+
+        A picture that raises an AutocolorError is left out.
+        """
         missing = next((key for key in wanted if key not in self._small), None)
         if missing is not None:
-            self._small[missing] = wanted[missing]()
+            try:
+                self._small[missing] = wanted[missing]()
+            except AutocolorError:
+                self._small[missing] = NO_PICTURE
         made = {key: self._small[key].colors for key in wanted if key in self._small}
         small = {key: colors for key, colors in made.items() if colors is not None}
         if small.keys() == self._words.keys():
@@ -100,37 +103,28 @@ class Gallery(Generic[Key]):
         if small:
             pixels = np.concatenate([each.reshape(-1, 3) for each in small.values()])
             places, colors = in_palette(pixels[None], MOST_COLORS)
-            words, first = places[0] + np.uint16(FIRST_WORD), 0
-            for key, each in small.items():
-                end = first + each.shape[0] * each.shape[1]
-                self._words[key], first = words[first:end].reshape(each.shape[:2]), end
+            ends = np.cumsum([each.shape[0] * each.shape[1] for each in small.values()])
+            for key, words in zip(small, np.split(places[0] + np.uint16(FIRST_WORD), ends[:-1]), strict=True):
+                self._words[key] = words.reshape(small[key].shape[:2])
             self.loads = [(FIRST_WORD, colors)]
         return True
 
-    def keep(self, keys: Collection[Key] = ()) -> None:
+    def keep(self, keys: Collection[Hashable] = ()) -> None:
         """Forget all other pictures; they are made again when they are wanted."""
         self._items = {}
-        for pictures in (self._small, self._words):
-            for key in [*pictures]:
-                if key not in keys:
-                    del pictures[key]
+        for key in self._small.keys() - keys:
+            del self._small[key]
+            self._words.pop(key, None)
 
-    def _picture(self, key: Key, area: Area) -> Item | None:
-        """The picture of a key in the middle of an area; None if it is not shown."""
-        words = self._words.get(key)
-        if words is None:
-            return None
-        if (key, area) not in self._items:
+    def framed(self, key: Hashable, tile: Tile) -> Tile:
+        """A tile with the picture of a key in the middle of its frame, and its note, if they are known."""
+        words, frame = self._words.get(key), tile.frame
+        if words is not None and (key, frame) not in self._items:
             lines, elements = words.shape
-            left, top = area.left + (area.width - elements) // 2, area.top + (area.height - lines) // 2
-            self._items[key, area] = image(words, left, top)
-        return self._items[key, area]
-
-    def framed(self, key: Key, tile: Tile) -> Tile:
-        """A tile with the picture and the note of a key, if they are known."""
-        small = self._small.get(key)
-        note = "" if small is None else small.note
-        return replace(tile, picture=self._picture(key, tile.frame), note=note)
+            left, top = frame.left + (frame.width - elements) // 2, frame.top + (frame.height - lines) // 2
+            self._items[key, frame] = image(words, left, top)
+        note = self._small.get(key, Small(None)).note
+        return replace(tile, picture=self._items.get((key, frame)), note=note)
 
 
 def small_picture(scene: Scene, picture: Picture, times: int = 1) -> Bytes:
@@ -141,22 +135,22 @@ def small_picture(scene: Scene, picture: Picture, times: int = 1) -> Bytes:
 
 
 def small_picture_of_file(path: Path, kind: str, up: str, times: int = 1) -> Small:
-    """The small picture of a file of a kind (see `Openable`); meshes are read with this axis up."""
-    try:
-        if kind == PICTURE.name:
-            scene, picture = read_picture(path, limit=PART_OF_BUDGET)
-            return Small(small_picture(scene, picture, times), "{}x{}".format(*picture.size))
-        if any(path.suffix.lower() in each.suffixes for each in FOREIGN):
-            # Another process reads it, which takes seconds.
-            return NO_PICTURE
-        scene = read_scene(path, up=up if kind == MESH else "z", limit=PART_OF_BUDGET)
-        count = len(scene.mesh.node_numbers)
-        if count > MOST_POLYGONS:
-            return Small(None, "too large")
-        picture = rendering(scene, 2 * times * LINES, 2 * times * ELEMENTS).picture
-        return Small(small_picture(scene, picture, times), f"{count:,} polygons")
-    except AutocolorError:
+    """The small picture of a file of a kind (see `Openable`); meshes are read with this axis up.
+
+    Raises AutocolorError.
+    """
+    if kind == PICTURE.name:
+        scene, picture = read_picture(path, limit=PART_OF_BUDGET)
+        return Small(small_picture(scene, picture, times), "{}x{}".format(*picture.size))
+    if any(path.suffix.lower() in each.suffixes for each in FOREIGN):
+        # Another process reads it, which takes seconds.
         return NO_PICTURE
+    scene = read_scene(path, up=up if kind == MESH else "z", limit=PART_OF_BUDGET)
+    count = len(scene.mesh.node_numbers)
+    if count > MOST_POLYGONS:
+        return Small(None, "too large")
+    picture = rendering(scene, 2 * times * LINES, 2 * times * ELEMENTS).picture
+    return Small(small_picture(scene, picture, times), f"{count:,} polygons")
 
 
 @dataclass(frozen=True)

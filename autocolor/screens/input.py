@@ -1,4 +1,4 @@
-"""Input: key bindings, and the gestures of the pointer, which the mouse and the joystick unit both make.
+"""The gestures of the pointer, which the mouse and the joystick unit both make.
 
 A hover is a movement; a pick is a click or ENTER. A drag begins with a grab, and ends with a drop. The unit
 has a place, ENTER and TRACK alone; TRACK stays on during a drag. The mouse also has other buttons, a wheel
@@ -7,9 +7,7 @@ and modifiers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Final, Generic, NamedTuple, TypeVar
+from typing import Final, NamedTuple
 
 from ramtek_emu import HostPort, instructions
 
@@ -98,70 +96,6 @@ def turn_between(element: int, line: int, other_element: int, other_line: int) -
 def wheel_ratio(steps: float) -> float:
     """The ratio of distances for some steps of the wheel; steps up move closer."""
     return float(STEP_CLOSER**steps)
-
-
-Driven = TypeVar("Driven")
-"""The system that keys drive."""
-
-
-@dataclass(frozen=True)
-class Chord:
-    """A key and its modifiers. `shift` matters for letters, but not for digits and signs."""
-
-    name: str
-    control: bool = False
-    shift: bool = False
-    alt: bool = False
-
-    @property
-    def is_sign(self) -> bool:
-        """Whether it is a digit or a sign, whose key depends on the keyboard layout."""
-        return len(self.name) == 1 and not self.name.isalpha()
-
-    def __str__(self) -> str:
-        modifiers = ["Ctrl"] * self.control + ["Shift"] * self.shift + ["Alt"] * self.alt
-        name = "Esc" if self.name == "escape" else self.name.capitalize()
-        return "+".join([*modifiers, name])
-
-
-@dataclass(frozen=True)
-class Binding(Generic[Driven]):
-    """Keys that are bound to an action.
-
-    `run` is called with the viewer and the index in `chords` of the key that was pressed. While the key stays
-    down, `run` is called again and again only with `held`, as one step to undo, or with `repeats`, as a step
-    for each call. `release` is called when one of the keys is let go. `does` describes the action on the help
-    page; `label` replaces the names of the keys there.
-    """
-
-    chords: tuple[Chord, ...]
-    does: str
-    run: Callable[[Driven, int], object]
-    label: str | None = None
-    held: bool = False
-    repeats: bool = False
-    release: Callable[[Driven], object] | None = None
-
-    def __str__(self) -> str:
-        return self.label or ", ".join(map(str, self.chords))
-
-
-def bound_to(
-    bindings: Sequence[Binding[Driven]], name: str, control: bool, shift: bool, alt: bool, typed: str
-) -> tuple[Binding[Driven], int] | None:
-    """The binding of a key that was pressed, and the index of its chord; None if it has none.
-
-    Signs are matched by the typed character, as keyboards place them differently, letters by the key's name.
-    """
-    chords = [
-        (binding, number, chord)
-        for binding in bindings
-        for number, chord in enumerate(binding.chords)
-        if (chord.control, chord.alt) == (control, alt)
-    ]
-    by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
-    by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]
-    return next(((binding, number) for binding, number, _ in by_sign or by_name), None)
 
 
 # The joystick unit of the display, as a host uses it: the host reads the cursor and turns it into gestures.

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Final, Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Final, NamedTuple, Protocol
 
-from autocolor.checks import Color
 from autocolor.errors import UsageError
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.orbit import sides_of
 from autocolor.screens.board import Board
 from autocolor.screens.file_actions import read_again, save, save_image
-from autocolor.screens.input import Binding, Chord
 from autocolor.screens.picture import picture_edits as edits
 from autocolor.screens.picture.picture_edits import CLOSER, TURN
 from autocolor.screens.session import PICTURE, SENT, Session
@@ -28,14 +29,56 @@ class Driven(Protocol):
     def show_scene(self) -> None:
         """Let go of everything, and show the scene."""
 
-    def watch(self) -> None:
-        """Let the picture come in line by line."""
-
     def escape(self) -> bool:
         """Take back, close or leave something; returns whether there was anything."""
 
     def save_screen(self) -> None:
         """Save what the display shows."""
+
+
+class Chord(NamedTuple):
+    """A key and its modifiers. `shift` matters for letters, but not for digits and signs."""
+
+    name: str
+    control: bool = False
+    shift: bool = False
+    alt: bool = False
+
+    @property
+    def is_sign(self) -> bool:
+        """Whether it is a digit or a sign, whose key depends on the keyboard layout."""
+        return len(self.name) == 1 and not self.name.isalpha()
+
+
+@dataclass(frozen=True)
+class Binding:
+    """Keys that are bound to an action, such as "Left Shift+Left".
+
+    `run` is called with the viewer and the number of the key among `keys`, from 0. While the key stays down,
+    `run` is called again and again only with `held`, as one step to undo, or with `repeats`, as a step for
+    each call. `release` is called when one of the keys is let go. `does` describes the action on the help
+    page; `label` replaces the keys there.
+    """
+
+    keys: str
+    does: str
+    run: Callable[[Driven, int], object]
+    label: str = ""
+    held: bool = False
+    repeats: bool = False
+    release: Callable[[Driven], object] | None = None
+
+    @property
+    def chords(self) -> list[Chord]:
+        """The keys with their modifiers."""
+        chords = []
+        for key in self.keys.split():
+            *modifiers, name = key.split("+") if len(key) > 1 else [key]
+            chords.append(Chord(name.lower(), *(each in modifiers for each in ("Ctrl", "Shift", "Alt"))))
+        return chords
+
+    def __str__(self) -> str:
+        return self.label or ", ".join(self.keys.split())
 
 
 def toggle(viewer: Driven, screen: str) -> None:
@@ -48,16 +91,16 @@ def names_in_strip(viewer: Driven) -> list[str]:
     return [name for name, screen in viewer.board.screens.items() if screen.word]
 
 
-def turn_along(viewer: Driven, number: int) -> None:
-    """Turn to a screen of the strip, counted from 0 at the left; after the last comes the first."""
-    names = names_in_strip(viewer)
-    viewer.session.turn_to(names[number % len(names)])
+def turn_along(viewer: Driven, step: int) -> None:
+    """Turn to the next screen of the strip, or the previous one. After the last screen comes the first."""
+    names, present = names_in_strip(viewer), viewer.session.screen
+    place = names.index(present) if present in names else 0
+    viewer.session.turn_to(names[(place + step) % len(names)])
 
 
-def place_in_strip(viewer: Driven) -> int:
-    """The place of the present screen in the strip; 0 if it has no word there."""
-    names = names_in_strip(viewer)
-    return names.index(viewer.session.screen) if viewer.session.screen in names else 0
+def watch(viewer: Driven) -> None:
+    """Let the picture come in line by line."""
+    viewer.session.watches = True
 
 
 def show_other(viewer: Driven) -> None:
@@ -79,28 +122,10 @@ def show_present(viewer: Driven) -> None:
     session.compared_from = PICTURE
 
 
-def undo_step(viewer: Driven) -> None:
-    """Undo the last step."""
+def with_scene(viewer: Driven, run: Callable[[Session], object]) -> None:
+    """Let go of everything, show the scene, and run an action that may change all of it."""
     viewer.show_scene()
-    undo(viewer.session)
-
-
-def redo_step(viewer: Driven) -> None:
-    """Redo the last undone step."""
-    viewer.show_scene()
-    redo(viewer.session)
-
-
-def go_to_view(viewer: Driven, back: bool) -> None:
-    """Return to the view before, or forward to the view that was left."""
-    viewer.show_scene()
-    edits.view_again(viewer.session, back)
-
-
-def reopen(viewer: Driven) -> None:
-    """Read the scene's file again, as one step to undo."""
-    viewer.show_scene()
-    read_again(viewer.session)
+    run(viewer.session)
 
 
 def take_sample(viewer: Driven, is_color: bool) -> None:
@@ -108,33 +133,30 @@ def take_sample(viewer: Driven, is_color: bool) -> None:
 
     Raises UsageError if there is none.
     """
-    sample = viewer.board.sample
+    board, sample = viewer.board, viewer.board.sample
     if sample is None or not sample.surface:
         raise UsageError("no surface is under the pointer; point at it in the picture")
     if is_color:
-        take_color(viewer.board, sample.color)
+        board.content.take_color(sample.color, *board.pointer)
     else:
         take_paint(viewer.session, sample.surface)
 
 
-def take_color(board: Board, color: Color | str) -> None:
-    """Let the screen take a color, with the pointer where it is."""
-    board.content.take_color(color, *board.pointer)
-
-
-def text_to_copy(board: Board) -> str:
-    """The typed text, the text of the row under the pointer, or the color there; empty without any."""
-    if board.typing.is_on:
-        return board.typing.text
-    if isinstance(board.lit, Entry):
-        return board.lit.value
-    color = board.content.color_at(*board.pointer)
-    return "" if color is None else in_digits(color)
-
-
 def copy(viewer: Driven) -> None:
-    """Copy the color or the text under the pointer to the clipboard; UsageError if there is none."""
-    text, clipboard = text_to_copy(viewer.board), viewer.session.clipboard
+    """Copy the typed text, the text of the row under the pointer, or the color there to the clipboard.
+
+    Raises UsageError if there is none.
+    """
+    board, clipboard = viewer.board, viewer.session.clipboard
+    if board.typing.is_on:
+        text = board.typing.text
+    elif isinstance(board.lit, Entry):
+        text = board.lit.value
+    else:
+        color, sample = board.content.color_at(*board.pointer), board.content.sample(*board.pointer)
+        if color is None and sample is not None:
+            color = sample.color
+        text = "" if color is None else in_digits(color)
     if not text:
         raise UsageError("nothing is there to copy; point at a color")
     if clipboard is None or not clipboard.copy(text):
@@ -171,7 +193,12 @@ def paste_text(board: Board, text: str) -> None:
     elif isinstance(lit, Entry) and not lit.why_not:
         lit.take(text)
     else:
-        take_color(board, text)
+        board.content.take_color(text, *board.pointer)
+
+
+def of_session(run: Callable[..., object], *values: object) -> Callable[[Driven, int], object]:
+    """A session's action for a binding: `run` also gets the value of the key that was pressed, if any."""
+    return lambda viewer, number: run(viewer.session, *values[number : number + 1])
 
 
 FINE_TURN: Final = 1.0
@@ -180,167 +207,143 @@ FINE_TURN: Final = 1.0
 BLEND: Final = 0.05
 """The step of the blend for each press of its keys."""
 
-BINDINGS: Final[tuple[Binding[Driven], ...]] = (
-    Binding((Chord("f1"),), "this help, and back", lambda viewer, _: toggle(viewer, "help")),
+BINDINGS: Final = (
+    Binding("F1", "this help, and back", lambda viewer, _: toggle(viewer, "help")),
     Binding(
-        (Chord("f2"),),
-        "the instructions that the last edit sent, and back",
-        lambda viewer, _: toggle(viewer, SENT),
+        "F2", "the instructions that the last edit sent, and back", lambda viewer, _: toggle(viewer, SENT)
     ),
     Binding(
-        (Chord("f4"),),
-        "the 1024 entries of the lookup table, and back",
-        lambda viewer, _: toggle(viewer, "entries"),
+        "F4", "the 1024 entries of the lookup table, and back", lambda viewer, _: toggle(viewer, "entries")
     ),
     Binding(
-        (Chord("tab"),),
+        "Tab",
         "the menu (or the right edge); its keys: arrows, Return",
         lambda viewer, _: viewer.board.toggle_menu(),
     ),
     Binding(
-        tuple(Chord(digit, control=True) for digit in "1234567890"),
+        "Ctrl+1 Ctrl+2 Ctrl+3 Ctrl+4 Ctrl+5 Ctrl+6 Ctrl+7 Ctrl+8 Ctrl+9 Ctrl+0",
         "the screens of the strip, from the left",
-        turn_along,
+        lambda viewer, number: viewer.session.turn_to(names_in_strip(viewer)[number]),
         label="Ctrl+1 to 0",
     ),
     Binding(
-        (Chord("tab", control=True), Chord("tab", control=True, shift=True)),
+        "Ctrl+Tab Ctrl+Shift+Tab",
         "the next screen of the strip, the previous one",
-        lambda viewer, number: turn_along(viewer, place_in_strip(viewer) + (1, -1)[number]),
+        lambda viewer, number: turn_along(viewer, (1, -1)[number]),
     ),
     Binding(
-        (Chord("h"),),
+        "H",
         "hide the menu and all panels, and bring them back",
         lambda viewer, _: viewer.board.switch_panels(),
     ),
     Binding(
-        (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
+        "Left Right Shift+Left Shift+Right",
         "turn around the object; finely with Shift",
         lambda viewer, number: edits.turn(viewer.session, (-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
         label="Left, Right",
         held=True,
     ),
     Binding(
-        (Chord("up"), Chord("down"), Chord("up", shift=True), Chord("down", shift=True)),
+        "Up Down Shift+Up Shift+Down",
         "look from above, from below; finely with Shift",
         lambda viewer, number: edits.turn(viewer.session, 0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
         label="Up, Down",
         held=True,
     ),
     Binding(
-        (Chord("+"), Chord("="), Chord("-")),
+        "+ = -",
         "move closer, farther",
-        lambda viewer, number: edits.move(viewer.session, (CLOSER, CLOSER, 1 / CLOSER)[number]),
+        of_session(edits.move, CLOSER, CLOSER, 1 / CLOSER),
         label="+ and -",
         held=True,
     ),
     Binding(
-        (Chord(","), Chord(".")),
+        ", .",
         "rotate the picture's horizontal axis",
-        lambda viewer, number: edits.tilt(viewer.session, (-1, 1)[number]),
+        of_session(edits.tilt, -1, 1),
         label="comma, period",
         held=True,
     ),
     Binding(
-        (*(Chord(f"f{number}") for number in range(5, 10)), Chord("f6", shift=True)),
+        "F5 F6 F7 F8 F9 Shift+F6",
         "view from front, left (Shift: right), back, top, corner",
         lambda viewer, number: edits.see_from(viewer.session, list(sides_of(viewer.session.scene))[number]),
         label="F5 to F9",
     ),
     Binding(
-        (Chord("r"), Chord("r", shift=True)),
+        "R Shift+R",
         "rescale: fill the picture with the object, the surface",
-        lambda viewer, number: (edits.rescale, edits.rescale_surface)[number](viewer.session),
+        lambda viewer, number: edits.rescale(viewer.session, ("", viewer.session.surface_name)[number]),
     ),
+    Binding("Home", "the view as opened", of_session(edits.as_opened)),
     Binding(
-        (Chord("home"),),
-        "the view as opened",
-        lambda viewer, _: edits.as_opened(viewer.session),
-        label="Home",
-    ),
-    Binding(
-        tuple(Chord(str(digit)) for digit in range(1, 10)),
+        "1 2 3 4 5 6 7 8 9",
         "switch a light on or off",
-        lambda viewer, number: edits.switch_light(viewer.session, number),
+        of_session(edits.switch_light, *range(9)),
         label="1 to 9",
     ),
     Binding(
-        (Chord("s"), Chord("s", shift=True)),
+        "S Shift+S",
         "select the next surface, the previous one",
-        lambda viewer, number: edits.next_surface(viewer.session, (1, -1)[number]),
+        of_session(edits.next_surface, 1, -1),
         repeats=True,
     ),
     Binding(
-        (Chord("["), Chord("]")),
+        "[ ]",
         "blend: light color from a lower, from a higher level",
-        lambda viewer, number: blend(viewer.session, (-BLEND, BLEND)[number]),
+        of_session(blend, -BLEND, BLEND),
         label="[ and ]",
         held=True,
     ),
+    Binding("C Shift+C", "the next object color, the previous one", of_session(repaint, 1, -1), repeats=True),
     Binding(
-        (Chord("c"), Chord("c", shift=True)),
-        "the next object color, the previous one",
-        lambda viewer, number: repaint(viewer.session, (1, -1)[number]),
-        repeats=True,
-    ),
-    Binding(
-        (Chord("p"), Chord("p", shift=True)),
+        "P Shift+P",
         "take the paint, the color that is under the pointer",
         lambda viewer, number: take_sample(viewer, number == 1),
     ),
+    Binding("Ctrl+C", "copy the color under the pointer", lambda viewer, _: copy(viewer)),
+    Binding("Ctrl+V", "paste a color", lambda viewer, _: paste(viewer)),
+    Binding("E", "hold the exposure (less light is darker), release it", of_session(edits.switch_exposure)),
+    Binding("W", "watch the picture being computed, line by line", lambda viewer, _: watch(viewer)),
     Binding(
-        (Chord("c", control=True),),
-        "copy the color under the pointer",
-        lambda viewer, _: copy(viewer),
-    ),
-    Binding((Chord("v", control=True),), "paste a color", lambda viewer, _: paste(viewer)),
-    Binding(
-        (Chord("e"),),
-        "hold the exposure (less light is darker), release it",
-        lambda viewer, _: edits.switch_exposure(viewer.session),
-    ),
-    Binding(
-        (Chord("w"),),
-        "watch the picture being computed, line by line",
-        lambda viewer, _: viewer.watch(),
-    ),
-    Binding(
-        (Chord("b"),),
+        "B",
         "while held: the state before the last step",
         lambda viewer, _: show_other(viewer),
         release=show_present,
     ),
     Binding(
-        (Chord("left", alt=True), Chord("right", alt=True)),
+        "Alt+Left Alt+Right",
         "the view before, and forward again",
-        lambda viewer, number: go_to_view(viewer, number == 0),
+        lambda viewer, number: with_scene(viewer, partial(edits.view_again, back=number == 0)),
         repeats=True,
     ),
-    Binding((Chord("z", control=True),), "undo", lambda viewer, _: undo_step(viewer), repeats=True),
+    Binding("Ctrl+Z", "undo", lambda viewer, _: with_scene(viewer, undo), repeats=True),
+    Binding("Ctrl+Y Ctrl+Shift+Z", "redo", lambda viewer, _: with_scene(viewer, redo), repeats=True),
+    Binding("Ctrl+S", "save the picture with its scene", of_session(save)),
+    Binding("F12", "save a numbered screenshot", lambda viewer, _: viewer.save_screen()),
+    Binding("Shift+F12", "save the picture alone under the next number", of_session(save_image)),
+    Binding("Ctrl+R", "read the scene's file again", lambda viewer, _: with_scene(viewer, read_again)),
     Binding(
-        (Chord("y", control=True), Chord("z", control=True, shift=True)),
-        "redo",
-        lambda viewer, _: redo_step(viewer),
-        repeats=True,
-    ),
-    Binding(
-        (Chord("s", control=True),),
-        "save the picture with its scene",
-        lambda viewer, _: save(viewer.session),
-    ),
-    Binding((Chord("f12"),), "save a numbered screenshot", lambda viewer, _: viewer.save_screen()),
-    Binding(
-        (Chord("f12", shift=True),),
-        "save the picture alone under the next number",
-        lambda viewer, _: save_image(viewer.session),
-    ),
-    Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: reopen(viewer)),
-    Binding(
-        (Chord("escape"),),
+        "Escape",
         "take a drag back; leave full screen, a list, a page",
         lambda viewer, _: viewer.escape(),
+        label="Esc",
     ),
 )
+CHORDS: Final = {chord: (each, number) for each in BINDINGS for number, chord in enumerate(each.chords)}
+"""The binding of each chord, and the number of the chord there."""
+
+
+def bound_to(name: str, control: bool, shift: bool, alt: bool, typed: str) -> tuple[Binding, int] | None:
+    """The binding of a key that was pressed, and the number of its chord; None if it has none.
+
+    Signs are matched by the typed character, as keyboards place them differently, letters by the key's name.
+    """
+    sign, key = Chord(typed, control, alt=alt), Chord(name, control, shift, alt)
+    by_sign = CHORDS.get(sign) if sign.is_sign else None
+    return by_sign or CHORDS.get(key._replace(shift=False) if key.is_sign else key)
+
+
 WINDOW_KEYS: Final = (
     ("F3", "record the window as a film, with a red mark; again: end it"),
     ("F10", "fill the window, or show whole multiples"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import itemgetter
@@ -10,7 +10,6 @@ from typing import Final
 
 from autocolor.screens.screen import Content, Handle
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import Area
 from autocolor.widgets.menu import MENU, STRIP, WIDE_BAR, NameList
 from autocolor.widgets.widget import Choice, Gap, Widget
 
@@ -31,29 +30,15 @@ class Layout:
     """The widgets over every screen, the topmost first."""
     offer: Widget | None = None
     """The button beside the message."""
-    opened: str = ""
-    """The key of the row whose wide bar or list is open, if that row is on this page of the menu."""
-    list_names: Callable[[Choice], NameList] | None = None
-    """Gives the open list of a choice."""
-
-    @cached_property
-    def opened_row(self) -> Widget | None:
-        """The row whose wide bar or list is open."""
-        if not self.opened:
-            return None
-        return next((row for row in self.rows if row.key == self.opened and opens(row)), None)
+    opened_row: Widget | None = None
+    """The row whose wide bar or list is open, if that row is on this page of the menu."""
+    listed: NameList | None = None
+    """The list of that row."""
 
     @cached_property
     def wide(self) -> Widget | None:
         """The wide bar of a row, if it is shown."""
-        row = self.opened_row
-        return row.at(WIDE_BAR) if isinstance(row, Bar) else None
-
-    @cached_property
-    def listed(self) -> NameList | None:
-        """The list of a row, if it is shown."""
-        row = self.opened_row
-        return self.list_names(row) if isinstance(row, Choice) and self.list_names is not None else None
+        return self.opened_row.at(WIDE_BAR) if isinstance(self.opened_row, Bar) else None
 
     @cached_property
     def widgets(self) -> Sequence[Widget]:
@@ -63,23 +48,10 @@ class Layout:
         offer = () if self.offer is None else (self.offer,)
         return (*offer, *listed, *wide, *self.over, *self.rows, *self.content.widgets, *self.strip)
 
-    @cached_property
-    def by_key(self) -> Mapping[str, Sequence[Widget]]:
-        """The widgets that have a key, the topmost first."""
-        by_key: dict[str, list[Widget]] = {}
-        for widget in self.widgets:
-            by_key.setdefault(widget.key, []).append(widget)
-        return by_key
-
     def is_covered(self, element: int, line: int) -> bool:
         """Whether the menu, its list or wide bar, or a panel over every screen covers a place."""
-        if self.rows and (MENU.has(element, line) or STRIP.has(element, line)):
-            return True
-        if self.wide is not None and WIDE_BAR.has(element, line):
-            return True
-        if self.listed is not None and self.listed.area.has(element, line):
-            return True
-        return any(widget.area.has(element, line) for widget in self.over)
+        opened = [each.area for each in (self.wide, self.listed, *self.over) if each is not None]
+        return any(area.has(element, line) for area in ((MENU, STRIP, *opened) if self.rows else opened))
 
     def widget_at(self, element: int, line: int) -> Widget | None:
         """The topmost widget at a place; headings and gaps are left out."""
@@ -88,17 +60,14 @@ class Layout:
                 return widget
         return None
 
-    def lit(self, key: str, area: Area) -> Widget | None:
-        """The row or widget that has a key, preferably at this area. A wide bar lights its row."""
-        widgets = [widget for widget in self.by_key.get(key, ()) if widget is not self.wide]
-        return next((widget for widget in widgets if widget.area == area), widgets[0] if widgets else None)
+    def now(self, earlier: Widget) -> Widget | None:
+        """A widget of an earlier layout as it is now, preferably in its area; None if it is gone.
 
-    def now(self, grabbed: Widget) -> Widget | None:
-        """A widget of an earlier layout as it is now, in its earlier area; None if it is gone."""
-        widgets = [each for each in self.by_key.get(grabbed.key, ()) if type(each) is type(grabbed)]
-        if not widgets:
-            return None
-        return next((each for each in widgets if each.area == grabbed.area), widgets[0]).at(grabbed.area)
+        The row of a wide bar stands for the bar.
+        """
+        key, wide = earlier.key, self.wide
+        widgets = [each for each in self.widgets if each.key == key and each is not wide]
+        return next((each for each in widgets if each.area == earlier.area), widgets[0] if widgets else None)
 
 
 def opens(row: Widget) -> bool:

@@ -67,7 +67,6 @@ def parameter_rows(session: Session, light: Light, columns: Sequence[str]) -> li
 
 
 def _kind_row(session: Session, light: Light) -> Choice:
-    """The choice of the kind of a light."""
     return Choice(
         "kind",
         "A point source shines to all sides; others along a direction, or at an aim.",
@@ -82,8 +81,7 @@ def _follows_row(session: Session, light: Light) -> Choice:
 
     def choose(follows: str) -> None:
         # The light stays where it is now.
-        followed = None if follows == WORLD else follows
-        session.edit(session.scene.with_light_following(light.name, followed))
+        session.edit(session.scene.with_light_following(light.name, None if follows == WORLD else follows))
 
     return Choice(
         "follows",

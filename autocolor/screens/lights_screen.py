@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -27,8 +27,15 @@ from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
 from autocolor.screens.file_actions import save_rig
 from autocolor.screens.input import Gesture
-from autocolor.screens.light_parameters import KIND, all_lights_on, light_alone, parameter_rows, solo_light
-from autocolor.screens.naming import name_light
+from autocolor.screens.light_parameters import (
+    KIND,
+    all_lights_on,
+    light_alone,
+    parameter_rows,
+    put_light,
+    solo_light,
+)
+from autocolor.screens.naming import ask_name
 from autocolor.screens.picture.light_handles import LightHandles, highlight_items
 from autocolor.screens.picture.over_picture import OverPicture, exposure_row
 from autocolor.screens.screen import Content, Surroundings
@@ -36,7 +43,7 @@ from autocolor.screens.session import Session
 from autocolor.visibility.projection import focal_length
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import GRAY, LIGHT_GRAY, SCREEN, YELLOW, Area, Item, area_of, lines
-from autocolor.widgets.menu import WORK, Section
+from autocolor.widgets.menu import WORK, Section, paged
 from autocolor.widgets.rows import INDENT, rows_of
 from autocolor.widgets.widget import (
     NOWHERE,
@@ -47,7 +54,6 @@ from autocolor.widgets.widget import (
     PanelButton,
     Switch,
     Widget,
-    page_choice,
     titled,
 )
 
@@ -59,9 +65,6 @@ PLACE: Final = (KIND, "position", "direction", "aim", "follows")
 
 POINTS: Final = ("first", "second", "third")
 """The points of the object that are picked for the plane of a new half-space."""
-
-PLANE: Final = "plane"
-"""The name of a new half-space."""
 
 
 class LightsScreen(OverPicture):
@@ -196,11 +199,11 @@ class LightsScreen(OverPicture):
 
     def _show_new(self, scene: Scene, message: str) -> None:
         """Show a scene whose last light is new, choose that light, and ask for its name."""
-        name = scene.lights[-1].name
-        self.session.edit(scene)
-        self.session.choose_light(name)
-        self.session.tell(message)
-        name_light(self.session, name, is_new=True)
+        session, name = self.session, scene.lights[-1].name
+        session.edit(scene)
+        session.choose_light(name)
+        session.tell(message)
+        ask_name(session, "light", name, lambda new: put_light(session, name, {"name": new}), is_new=True)
 
     def _remove(self) -> None:
         name = self.session.light_name
@@ -227,17 +230,15 @@ class LightsScreen(OverPicture):
             ]
             rows += [buttons[:3], buttons[3:]]
             names = [light.name for light in lights]
-            pages = -(-len(lights) // LIGHTS_A_PAGE)
-            page = names.index(session.light_name) // LIGHTS_A_PAGE if lights else 0
-            first = page * LIGHTS_A_PAGE
-            for number, light in enumerate(lights[first : first + LIGHTS_A_PAGE], first + 1):
-                rows.append(light_row(session, number, light))
-            if pages > 1:
-
-                def turn(page: int) -> None:
-                    session.choose_light(names[page * LIGHTS_A_PAGE])
-
-                rows.append([page_choice("Another page of lights.", page, pages, turn)])
+            shown, turning = paged(
+                list(enumerate(lights, start=1)),
+                LIGHTS_A_PAGE,
+                names.index(session.light_name) // LIGHTS_A_PAGE if lights else 0,
+                "Another page of lights.",
+                lambda page: session.choose_light(names[page * LIGHTS_A_PAGE]),
+            )
+            rows += [light_row(session, *each) for each in shown]
+            rows += [turning] if turning else []
             if lights:
                 run = partial(all_lights_on, session)
                 rows.append([Button("all lights on", "Switch all lights on.", run=run)])
@@ -287,7 +288,7 @@ class LightsScreen(OverPicture):
             self._ask_for_point(points)
             return
         light = scene.lights_in_world[session.light_name]
-        name = free_name(PLANE, [each.name for each in light.half_spaces])
+        name = free_name("plane", [each.name for each in light.half_spaces])
         half_space = facing(HalfSpace.through(name, *points), light)
         session.edit(scene.with_light(light.name, half_spaces={name: half_space}))
         session.tell(f"half-space added to {light.name}: {name}")
@@ -329,12 +330,11 @@ def light_row(session: Session, number: int, light: Light) -> list[Widget]:
     bar = fields_of(Light)["intensity"].bar
     assert bar is not None
 
-    def put(**changes: Any) -> None:
-        session.edit(session.scene.with_light(name, **changes))
+    put = partial(put_light, session, name)
 
     def choose() -> None:
         if name == session.light_name:
-            name_light(session, name)
+            ask_name(session, "light", name, lambda new: put({"name": new}))
         session.choose_light(name)
 
     return [
@@ -343,7 +343,7 @@ def light_row(session: Session, number: int, light: Light) -> list[Widget]:
             f"{name}: a click chooses the light, another renames it; the box: on, off.",
             within="light list",
             is_on=light.on,
-            flip=lambda: put(on=not light.on),
+            flip=lambda: put({"on": not light.on}),
             choose=choose,
             is_chosen=name == session.light_name,
         ),
@@ -353,7 +353,7 @@ def light_row(session: Session, number: int, light: Light) -> list[Widget]:
             within=within,
             value=light.intensity,
             **bar._asdict(),
-            put=lambda intensity: put(intensity=intensity),
+            put=lambda intensity: put({"intensity": intensity}),
             word=LIGHT_GRAY if light.on else GRAY,
         ),
         Button(

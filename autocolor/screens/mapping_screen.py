@@ -16,18 +16,11 @@ import numpy as np
 from autocolor.arrays import Floats, Singles
 from autocolor.errors import UsageError
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.intensity import (
-    fractions_by_surface,
-    has_extent,
-    held_exposure,
-    held_name,
-    mapped_ranges,
-    ranges_of,
-    stage_surfaces,
-)
+from autocolor.mapping.intensity import fractions_by_surface, held_name, ranges_of
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.screens.cached import Cached
+from autocolor.screens.effects import ranges_to_hold
 from autocolor.screens.input import Gesture
 from autocolor.screens.picture.over_picture import HELD, OverPicture, exposure_row
 from autocolor.screens.screen import Content, Handle, Sample, Surroundings
@@ -93,10 +86,10 @@ class MappingScreen(OverPicture):
         ]
         name, exposure = self.session.surface_name, self.session.scene.exposure
         title = f"{fitted(name, MOST_CHARACTERS)}: {range_state(exposure, name)}" if name else ""
-        items = [*content.items, *panel_items(title, *self._levels_and_shares(), self._points, self._touched)]
+        panel = panel_items(title, *self._levels_and_shares(), self._points, self._touched)
         return replace(
             content,
-            items=items,
+            items=[*content.items, *panel],
             handles=[*content.handles, *handles],
             hint=self._hint,
             sample=self._sample,
@@ -105,11 +98,10 @@ class MappingScreen(OverPicture):
             wheel=self._wheel,
         )
 
-    # The menu.
-
     def _rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
         others = ("name", "view", "scalar", "front", "stage", "backdrop", *OF_DISPLAY)
+        inner = range(1, len(self._points) - 1)
         return [
             Choice(
                 "mapping",
@@ -128,7 +120,7 @@ class MappingScreen(OverPicture):
             Button(
                 "remove point",
                 "Remove the yellow point, which was touched last.",
-                "" if self._removes else "click at a point between the ends of the curve first",
+                "" if self._touched in inner else "click at a point between the ends of the curve first",
                 run=self._remove,
             ),
             Button(
@@ -146,19 +138,12 @@ class MappingScreen(OverPicture):
             *rows_of(scene, self._put, session.world, columns=OF_DISPLAY),
         ]
 
-    @property
-    def _removes(self) -> bool:
-        """Whether a point was touched that can be removed; the ends of the curve stay."""
-        return self._touched is not None and 0 < self._touched < len(self._points) - 1
-
     def _remove(self) -> None:
         touched, self._touched = self._touched, None
         self._put({"mapping": [point for n, point in enumerate(self._points) if n != touched]})
 
     def _put(self, changes: Mapping[str, Any]) -> None:
         self.session.edit(self.session.scene.replace(**changes))
-
-    # The curve.
 
     # On the panel, gestures are for the curve, and beside it for the picture.
 
@@ -408,24 +393,21 @@ def flipped(session: Session, name: str) -> Exposure:
     are held, because those of the other surfaces could not follow the picture as before. Raises UsageError if
     the surface has no range to hold.
     """
-    studio, scene = session.studio, session.scene
-    held: dict[str, tuple[float, float]] = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
-    if held_name(scene.exposure, name):
+    studio, exposure = session.studio, session.scene.exposure
+    held = {} if isinstance(exposure, str) else dict(exposure)
+    if held_name(exposure, name):
         of_object = held.pop(OBJECT, None)
         others = [other for other in studio.level_ranges if other != OBJECT]
         held = {**(dict.fromkeys(others, of_object) if of_object else {}), **held}
         held.pop(name)
         return tuple(held.items()) or studio.history.following_exposure
-    picture = studio.display_image.mapped
-    stage, number = stage_surfaces(scene), picture.surfaces.index(name) + 1
-    extent = mapped_ranges(picture, scene.scaling, scene.exposure, stage=stage).get(number)
-    if extent is None or not has_extent(extent):
+    ranges = ranges_to_hold(studio.display_image)
+    limits = ranges.get(name, ranges.get(OBJECT))
+    if limits is None or name not in studio.display_image.mapped.ranges.surfaces:
         raise UsageError(f"{name} has no range to hold; light it, and turn it to the eye")
-    if isinstance(scene.exposure, str) and scene.exposure != AUTO:
-        ranges = held_exposure(picture, scene.scaling, scene.exposure, stage)
-        held = {} if isinstance(ranges, str) else dict(ranges)
-    held[name] = (extent.minimum * picture.scale, extent.maximum * picture.scale)
-    return tuple(held.items())
+    if isinstance(exposure, str) and exposure != AUTO:
+        held = ranges
+    return tuple({**held, name: limits}.items())
 
 
 def held_rows(session: Session) -> list[Widget]:
@@ -441,7 +423,7 @@ def held_rows(session: Session) -> list[Widget]:
 
     def hold(minimum: float, maximum: float) -> None:
         limits = {**dict(exposure), name: (minimum, maximum)}
-        session.edit(session.scene.replace(exposure=tuple(limits.items())))
+        session.edit(session.scene.replace(exposure=limits))
 
     of = "all surfaces" if name == OBJECT else name
     return [

@@ -5,8 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from autocolor.widgets.menu import MENU, NameList, Section, folded, lines_of, list_of, page_of_menu
-from autocolor.widgets.widget import Choice, Gap, Widget
+from autocolor.screens.layout import opens
+from autocolor.widgets.menu import (
+    MENU,
+    NameList,
+    Section,
+    folded,
+    lines_of,
+    list_of,
+    page_of_menu,
+    sections_of,
+)
+from autocolor.widgets.widget import Choice, Widget
 
 
 class MenuState:
@@ -27,8 +37,8 @@ class MenuState:
         """The page of the list; None for the page of the present name."""
         self._folds: dict[str, dict[str, bool]] = {}
         """By screen, whether sections of its menu are to be open or folded, the last used at the end."""
-        self._sections: dict[str, bool] = {}
-        """Whether each section of the present menu is open."""
+        self._shown: Sequence[Widget] = ()
+        """The rows of all pages of the present menu, without the rows of its folded sections."""
 
     def stamp(self, screen: str) -> object:
         """A value that changes whenever the rows of a screen's menu or their list may."""
@@ -37,31 +47,27 @@ class MenuState:
     def rows(self, screen: str, rows: Sequence[Widget], last: Sequence[Widget]) -> list[Widget]:
         """The rows of this page of a screen's menu, laid out; each page ends with the `last` rows."""
         folds = self._folds.get(screen, {})
-        shown = folded(rows, folds, partial(self.fold, screen), MENU.height - lines_of(last))
-        self._sections = {row.label: row.is_open for row in shown if isinstance(row, Section)}
+        self._shown = folded(rows, folds, partial(self.fold, screen), MENU.height - lines_of(last))
         if folds:
             # A section that was folded to make room stays folded.
-            folds.update(self._sections)
-        return page_of_menu(shown, last, self._page, partial(setattr, self, "_page"))
+            self._note_sections(folds)
+        return page_of_menu(self._shown, last, self._page, partial(setattr, self, "_page"))
+
+    def _note_sections(self, folds: dict[str, bool]) -> None:
+        folds.update({row.label: row.is_open for row in self._shown if isinstance(row, Section)})
 
     def fold(self, screen: str, section: str, is_open: bool) -> None:
         """Open or fold a section of this menu, and note that it was used last; the others stay."""
         folds = self._folds.setdefault(screen, {})
-        folds.update(self._sections)
+        self._note_sections(folds)
         folds.pop(section, None)
         folds[section] = is_open
 
-    def use(self, screen: str, widget: Widget, rows: Sequence[Widget]) -> None:
+    def use(self, screen: str, widget: Widget) -> None:
         """Note that the section of a widget was used last, so that the section stays open if it grows."""
-        section = ""
-        for row in rows:
-            if isinstance(row, Section):
-                section = row.label
-            elif isinstance(row, Gap):
-                # The last rows of the menu are in no section.
-                section = ""
-            elif row.key == widget.key and section:
-                self.fold(screen, section, True)
+        for section, *rows in sections_of(self._shown)[1:]:
+            if any(row.key == widget.key for row in rows):
+                self.fold(screen, section.label, True)
                 return
 
     def open_or_close(self, row: Widget) -> None:
@@ -69,11 +75,17 @@ class MenuState:
         self.opened = "" if self.opened == row.key else row.key
         self._list_page = None
 
-    def list_of(self, choice: Choice) -> NameList:
-        """The open list of a choice."""
-        return list_of(
-            choice, self._list_page, partial(self._take, choice), partial(setattr, self, "_list_page")
+    def opened_of(self, rows: Sequence[Widget]) -> tuple[Widget | None, NameList | None]:
+        """The row whose wide bar or list is open, and its list."""
+        row = (
+            next((row for row in rows if row.key == self.opened and opens(row)), None)
+            if self.opened
+            else None
         )
+        if not isinstance(row, Choice):
+            return row, None
+        turn = partial(setattr, self, "_list_page")
+        return row, list_of(row, self._list_page, partial(self._take, row), turn)
 
     def close(self) -> None:
         """Take the menu away where it comes on demand."""
@@ -81,5 +93,5 @@ class MenuState:
 
     def begin(self) -> None:
         """Show the first page of another screen's menu, with nothing open."""
-        self.opened, self._page = "", 0
+        self.opened, self._page, self._shown = "", 0, ()
         self.close()

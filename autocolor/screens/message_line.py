@@ -10,17 +10,7 @@ from textwrap import wrap
 from typing import Final, NamedTuple
 
 from autocolor.screens.session import Offer, Session
-from autocolor.widgets.items import (
-    BLACK,
-    CHARACTER,
-    HEIGHT,
-    WIDTH,
-    YELLOW,
-    Area,
-    Item,
-    filled,
-    text,
-)
+from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WIDTH, YELLOW, Area, Item, filled, text
 from autocolor.widgets.menu import MESSAGE_CHARACTERS, MESSAGE_LINES
 from autocolor.widgets.widget import MARGIN, Entry, PanelButton, Widget
 

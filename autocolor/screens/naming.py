@@ -11,14 +11,17 @@ from autocolor.screens.session import Session
 from autocolor.widgets.widget import Entry, titled
 
 
-def name_light(session: Session, name: str, is_new: bool = False) -> None:
-    """Ask for a name of a light; with `is_new`, the name belongs to the step that made the light."""
+def ask_name(
+    session: Session, noun: str, name: str, rename: Callable[[str], object], is_new: bool = False
+) -> None:
+    """Ask for a name; `rename` takes it. With `is_new`, it belongs to the step that made the named thing."""
 
-    def rename(new: str) -> None:
-        session.edit(session.scene.with_light(name, name=new))
-        session.choose_light(new)
+    def take(text: str) -> None:
+        session.same_step = is_new
+        rename(text.strip())
+        session.tell(titled(noun, text.strip()))
 
-    _ask(session, "light", name, rename, is_new)
+    session.naming = Entry(f"name of the {noun}", value=name, take=take)
 
 
 def name_view(session: Session, name: str, is_new: bool = False) -> None:
@@ -27,26 +30,4 @@ def name_view(session: Session, name: str, is_new: bool = False) -> None:
     def rename(new: str) -> None:
         session.edit(session.scene.with_named_view(name, name=new))
 
-    _ask(session, "camera", name, rename, is_new)
-
-
-def name_variant(session: Session, name: str, choose: Callable[[str], object]) -> None:
-    """Ask for a name of a variant, and choose the variant by it."""
-
-    def rename(new: str) -> None:
-        if new != name:
-            session.studio.rename_variant(name, new)
-        choose(new)
-
-    _ask(session, "variant", name, rename)
-
-
-def _ask(
-    session: Session, noun: str, name: str, rename: Callable[[str], object], same_step: bool = False
-) -> None:
-    def take(text: str) -> None:
-        session.same_step = same_step
-        rename(text.strip())
-        session.tell(titled(noun, text.strip()))
-
-    session.naming = Entry(f"name of the {noun}", value=name, take=take)
+    ask_name(session, "camera", name, rename, is_new)

@@ -21,10 +21,9 @@ from autocolor.scene.scalar import Scalar
 from autocolor.screens.picture.over_picture import OverPicture, surface_row
 from autocolor.screens.screen import Content, Surroundings
 from autocolor.widgets.bars import Bar, bar_within
-from autocolor.widgets.rows import rows_of
+from autocolor.widgets.rows import NONE, rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget
 
-NO_SCALAR: Final = "none"
 ZEBRA: Final = "zebra"
 """The name of a computed scalar, and of the scale that it is for."""
 
@@ -55,8 +54,8 @@ class ScalarScreen(OverPicture):
         choice = Choice(
             "scalar",
             "The scalar that colors the surfaces: a scalar of the mesh, or a computed scalar.",
-            names=(NO_SCALAR, *scene.scalar_names),
-            present=NO_SCALAR if scalar is None else scalar.name,
+            names=(NONE, *scene.scalar_names),
+            present=NONE if scalar is None else scalar.name,
             choose=self._choose,
         )
         if scalar is None:
@@ -64,15 +63,33 @@ class ScalarScreen(OverPicture):
         is_computed = scalar.name not in {each.name for each in scene.mesh.scalars}
         unused = [key for key, names in COMPUTED_WITH.items() if not (is_computed and scalar.name in names)]
         is_placed = scalar.legend_place is not None
+        scale = scalar.scale if isinstance(scalar.scale, str) else OWN_COLORS
+        base = scale.removesuffix(REVERSED)
+        end = scale.removeprefix(base)
+        name, colored = session.surface_name, colored_surfaces(scene)
+        wanted = [row.name for row in scene.surfaces if row.name in {*colored} ^ {name}]
         beyond = "The color of values {} the limits; none: the color of the {} band."
         return [
             choice,
             Gap("scale gap"),
-            *self._scale_rows(scalar),
+            Choice(
+                "scale",
+                "The colors of the bands; only entries are sent.",
+                names=tuple(each for each in COLOR_SCALES if not each.endswith(REVERSED)),
+                present=base,
+                choose=lambda chosen: self._put({"scale": chosen + end}),
+            ),
+            Switch(
+                "reversed",
+                "Let the scale run from its last color to its first.",
+                "" if scale != OWN_COLORS else "the scale is a list of colors; choose one with a name first",
+                is_on=bool(end),
+                flip=lambda: self._put({"scale": base if end else base + REVERSED}),
+            ),
             Gap("limits gap"),
             *self._limit_rows(scalar),
-            self._color_row("below", beyond.format("below", "first"), scalar.below, (NO_COLOR, *NAMED)),
-            self._color_row("above", beyond.format("above", "last"), scalar.above, (NO_COLOR, *NAMED)),
+            self._color_row("below", beyond.format("below", "first"), scalar.below, (NONE, *NAMED)),
+            self._color_row("above", beyond.format("above", "last"), scalar.above, (NONE, *NAMED)),
             self._color_row("missing", "The color where there is no value.", scalar.missing, tuple(NAMED)),
             Gap("bands gap"),
             *rows_of(scalar, self._put, session.world, leave_out=(*WITH_ROWS, *unused)),
@@ -84,28 +101,13 @@ class ScalarScreen(OverPicture):
                 flip=lambda: self._put({"legend_place": None if is_placed else CORNERS[0]}),
             ),
             Gap("surfaces gap"),
-            *self._surface_rows(),
-        ]
-
-    def _scale_rows(self, scalar: Scalar) -> list[Widget]:
-        """The color scale, and whether it is reversed."""
-        name = scalar.scale if isinstance(scalar.scale, str) else OWN_COLORS
-        base = name.removesuffix(REVERSED)
-        end = name.removeprefix(base)
-        return [
-            Choice(
-                "scale",
-                "The colors of the bands; only entries are sent.",
-                names=tuple(each for each in COLOR_SCALES if not each.endswith(REVERSED)),
-                present=base,
-                choose=lambda chosen: self._put({"scale": chosen + end}),
-            ),
+            surface_row(session, "A surface, for the switch below; a click in the picture chooses, too."),
             Switch(
-                "reversed",
-                "Let the scale run from its last color to its first.",
-                "" if name != OWN_COLORS else "the scale is a list of colors; choose one with a name first",
-                is_on=bool(end),
-                flip=lambda: self._put({"scale": base if end else base + REVERSED}),
+                "colored",
+                f"Whether the scalar colors {name}; else it has its own colors.",
+                "" if name else "the scene has no surface in use",
+                is_on=name in colored,
+                flip=lambda: self._put({"surfaces": wanted}),
             ),
         ]
 
@@ -158,34 +160,14 @@ class ScalarScreen(OverPicture):
             column,
             help,
             names=names,
-            present=NO_COLOR if color is None else name_of.get(color, in_digits(color)),
+            present=NONE if color is None else name_of.get(color, in_digits(color)),
             choose=lambda name: self._put({column: NAMED.get(name)}),
         )
-
-    def _surface_rows(self) -> list[Widget]:
-        """The chosen surface, and whether the scalar colors it."""
-        session = self.session
-        colored, name = colored_surfaces(session.scene), session.surface_name
-
-        def flip() -> None:
-            wanted = {*colored} ^ {name}
-            self._put({"surfaces": [each.name for each in session.scene.surfaces if each.name in wanted]})
-
-        return [
-            surface_row(session, "A surface, for the switch below; a click in the picture chooses, too."),
-            Switch(
-                "colored",
-                f"Whether the scalar colors {name}; else it has its own colors.",
-                "" if name else "the scene has no surface in use",
-                is_on=name in colored,
-                flip=flip,
-            ),
-        ]
 
     def _choose(self, name: str) -> None:
         """Show another scalar in its own range, or none. Zebra stripes bring and take their own colors."""
         scene = self.session.scene
-        if name == NO_SCALAR:
+        if name == NONE:
             self.session.edit(scene.without_scalar())
             return
         colors: dict[str, Any] = {}
@@ -214,5 +196,3 @@ NAMED: Final[Mapping[str, Color]] = {
     "blue": (0, 0, 255),
 }
 """Assumed: colors enough to differ from any color scale."""
-
-NO_COLOR: Final = "none"

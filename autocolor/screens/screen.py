@@ -105,7 +105,7 @@ class Content:
     sample: Callable[[int, int], Sample | None] = lambda element, line: None
     """Gives the pixel of the picture that is seen at a place; None where no picture is seen."""
     color_at: Callable[[int, int], Color | None] = lambda element, line: None
-    """Gives the color to copy at a place; None if there is none."""
+    """Gives the color to copy at a place; None for that of the sample."""
     take_color: Callable[[Color | str, int, int], object] = take_no_color
     """Takes a pasted or sampled color, with the pointer at a place. Raises UsageError if it cannot."""
     preferred: Callable[[Sequence[Handle], int, int], Sequence[Handle]] = lambda near, element, line: near

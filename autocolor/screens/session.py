@@ -30,25 +30,13 @@ from ramtek_emu import HostPort
 from ramtek_emu.errors import escaped
 
 PICTURE: Final = "picture"
-"""The name of the screen that a session begins with, and comes back to."""
-
 MIXING: Final = "mixing"
-"""The name of the screen where colors are mixed, and taken from swatches and paints."""
-
 BLENDING: Final = "blending"
-"""The name of the screen where the two colors are blended over the picture; color mixing leads to it."""
-
 HISTORY: Final = "history"
-"""The name of the screen with the steps of the session."""
-
 SPLIT: Final = "split"
-"""The name of the screen with two states, left and right of a line."""
-
 EXPLAIN: Final = "explain"
-"""The name of the screen that explains a pixel."""
-
 SENT: Final = "sent"
-"""The name of the screen that lists what the last edit sent."""
+"""The names of screens to which other screens turn. A session begins with the picture, and returns to it."""
 
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message is shown."""
@@ -203,7 +191,7 @@ class Session:
     def __post_init__(self) -> None:
         self.root = self.folder = self.root.resolve()
         self.comparing = Comparing(self.studio)
-        self._names = TableNames(self._names_in, {})
+        self._names = TableNames(lambda table: tuple([row.name for row in vars(self.scene)[table]]), {})
         self._world: Cached[World] = Cached()
 
     @property
@@ -222,9 +210,6 @@ class Session:
             return World(*scene.object_bounds, self._names, (low, high))
 
         return self._world.of(world, mesh, scene.parts)
-
-    def _names_in(self, table: str) -> tuple[str, ...]:
-        return tuple([row.name for row in vars(self.scene)[table]])
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""
@@ -250,10 +235,6 @@ class Session:
         """Whether a hint may take the place of the message: it need not stay, and offers nothing."""
         news = self.news
         return self.has_news and not (news.is_warning or news.persistent or news.offer)
-
-    def shorten_news(self) -> None:
-        """Let the message go as soon as it was shown for LEAST_SECONDS."""
-        self.news = self.news._replace(seconds=LEAST_SECONDS)
 
     def tell(
         self, message: str, is_warning: bool = False, persistent: bool = False, offer: Offer | None = None

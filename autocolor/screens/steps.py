@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from autocolor.journal.description import describe
 from autocolor.screens.comparing import MOST_DESCRIBED, NOW
 from autocolor.screens.session import PICTURE, SPLIT, Session
@@ -31,22 +29,23 @@ def switch_split(session: Session) -> None:
     session.turn_to(PICTURE if session.screen == SPLIT else SPLIT)
 
 
-def undo(session: Session, steps: int = 1) -> None:
-    """Undo the last step, or some steps at once."""
-    go(session, session.studio.undo, "undo", steps)
+def undo(session: Session) -> None:
+    """Undo the last step."""
+    go(session, -1)
 
 
-def redo(session: Session, steps: int = 1) -> None:
-    """Redo the last undone step, or some steps at once."""
-    go(session, session.studio.redo, "redo", steps)
+def redo(session: Session) -> None:
+    """Redo the last undone step."""
+    go(session, 1)
 
 
-def go(session: Session, run: Callable[[int], bool], verb: str, steps: int) -> None:
-    """Go some steps back or forth, and tell what they changed."""
-    before = session.scene
-    if not run(steps):
+def go(session: Session, steps: int) -> None:
+    """Go some steps forth, or back if the number is negative, and tell what they changed."""
+    before, count, studio = session.scene, abs(steps), session.studio
+    verb = "undo" if steps < 0 else "redo"
+    if not (studio.undo(count) if steps < 0 else studio.redo(count)):
         session.tell(f"nothing to {verb}")
         return
-    earlier, later = (session.scene, before) if verb == "undo" else (before, session.scene)
-    count = f"{steps} steps " if steps > 1 else ""
-    session.tell(f"{count}{verb}ne: {describe(earlier, later, MOST_DESCRIBED) or 'no change'}")
+    earlier, later = (session.scene, before) if steps < 0 else (before, session.scene)
+    what = describe(earlier, later, MOST_DESCRIBED) or "no change"
+    session.tell(f"{f'{count} steps ' if count > 1 else ''}{verb}ne: {what}")

@@ -34,7 +34,7 @@ class Lesson(NamedTuple):
     """A task: its name, two lines of instructions, and a function that sees whether it was done."""
 
     name: str
-    lines: tuple[str, str]
+    text: str
     is_done: Callable[[Work, Work], bool]
 
 
@@ -73,58 +73,46 @@ def is_saved(before: Work, now: Work) -> bool:
 LESSONS: Final = (
     Lesson(
         "move a light",
-        (
-            "The right edge brings the menu: pick views above it. Drag a light in",
-            "one of the views. Or pick it, and then its new place in that view.",
-        ),
+        "The right edge brings the menu: pick views above it. Drag a light in\n"
+        "one of the views. Or pick it, and then its new place in that view.",
         edited("lights", lambda light: [light.position]),
     ),
     Lesson(
         "flaps",
-        (
-            "Keep a light from a part of the car: in the menu of views or lights,",
-            "add one of the flaps x, y and z, and set where it ends.",
-        ),
+        "Keep a light from a part of the car: in the menu of views or lights,\n"
+        "add one of the flaps x, y and z, and set where it ends.",
         edited("lights", cutting_flaps),
     ),
     Lesson(
         "a cone",
-        (
-            "Make a spotlight: in the same menu, switch on the cone angle. Drag",
-            "along its bar until the rim of the light is where you want it.",
-        ),
+        "Make a spotlight: in the same menu, switch on the cone angle. Drag\n"
+        "along its bar until the rim of the light is where you want it.",
         edited("lights", lambda light: [light.cone_angle]),
     ),
     Lesson(
         "mix a color",
-        (
-            "Paint the car: pick picture at the top, pick the body, then colors at",
-            "the top. Drag the bars, or pick one of the paints in the menu.",
-        ),
+        "Paint the car: pick picture at the top, pick the body, then colors at\n"
+        "the top. Drag the bars, or pick one of the paints in the menu.",
         edited("surfaces", lambda row: [row.paint.object_color, row.paint.light_color, row.paint.ramp]),
     ),
     Lesson(
         "blend",
-        (
-            "In the menu of colors, pick light blending. Drag the handle of the",
-            "bar: above it, the body takes the color of the light.",
-        ),
+        "In the menu of colors, pick light blending. Drag the handle of the\n"
+        "bar: above it, the body takes the color of the light.",
         edited("surfaces", lambda row: [row.paint.blend]),
     ),
     Lesson(
         "save",
-        (
-            "Pick file at the top, and save there: the message line tells you the",
-            "names of the files that hold the scene and the picture.",
-        ),
+        "Pick file at the top, and save there: the message line tells you the\n"
+        "names of the files that hold the scene and the picture.",
         is_saved,
     ),
 )
 """The tasks, in the order of the paper: lights, flaps and cones, colors."""
 
 END: Final = (
-    "That was all. Views, reflectance, mapping, variants and undo are in",
-    "the menus, too. Your work stays: pick end, and go on with it.",
+    "That was all. Views, reflectance, mapping, variants and undo are in\n"
+    "the menus, too. Your work stays: pick end, and go on with it."
 )
 
 HEAD_LINES: Final = 16
@@ -163,14 +151,17 @@ class Tutorial:
         """The panel, the topmost widget first; the next lesson if this one has been done."""
         if self.has_ended:
             return ()
-        if self.lesson is not None and self.lesson.is_done(
-            self._before, work_of(self._session.studio.history)
-        ):
+        now = work_of(self._session.studio.history)
+        if self.lesson is not None and self.lesson.is_done(self._before, now):
             self._go_on(True)
         height = HEAD_LINES if self._is_folded else LINES
         top = WIDE_BAR.top - height if self._is_low else WORK.top
         area = Area(WORK.left, top, WORK.right, top + height - 1)
-        head, ink = ("well done!  ", GREEN) if self._is_done else ("", YELLOW)
+        title, text = "end of the tutorial", END
+        if self.lesson is not None:
+            title, text = f"{self._number + 1} of {len(LESSONS)}: {self.lesson.name}", self.lesson.text
+        head = (f"well done!  {title}", GREEN) if self._is_done else (title, YELLOW)
+        lines = [head, *((line, WHITE) for line in text.splitlines())]
         buttons = [
             ("end", "End the tutorial; your work stays.", partial(setattr, self, "has_ended", True)),
             (
@@ -178,26 +169,21 @@ class Tutorial:
                 "Move the panel out of the way.",
                 partial(setattr, self, "_is_low", not self._is_low),
             ),
-        ]
-        if self.lesson is None:
-            head, lines = f"{head}end of the tutorial", END
-        else:
-            head, lines = f"{head}{self._number + 1} of {len(LESSONS)}: {self.lesson.name}", self.lesson.lines
             # At the left, so that the other buttons stay in their places when it goes.
-            buttons.append(("skip", "Go on without doing this.", partial(self._go_on, False)))
+            ("skip", "Go on without doing this.", partial(self._go_on, False)),
+        ]
         panel: list[Widget] = []
-        right = area.right - 1
-        for label, help, run in buttons:
-            place = Area(right - BUTTON + 1, area.top + 1, right, area.top + HEAD_LINES - 2)
+        for number, (label, help, run) in enumerate(buttons if self.lesson else buttons[:2], start=1):
+            left = area.right - number * BUTTON
+            place = Area(left, area.top + 1, left + BUTTON - 1, area.top + HEAD_LINES - 2)
             panel.append(PanelButton(label, help, area=place, run=run, within="tutorial"))
-            right -= BUTTON
         return [
             *panel,
             Panel(
                 "tutorial",
                 "Fold the panel, or show it whole.",
                 area=area,
-                lines=[(head, ink), *(() if self._is_folded else ((line, WHITE) for line in lines))],
+                lines=lines[:1] if self._is_folded else lines,
                 run=partial(setattr, self, "_is_folded", not self._is_folded),
             ),
         ]

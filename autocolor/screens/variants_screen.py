@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
-from autocolor.errors import InputError
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 from autocolor.screens.comparing import BEFORE, NamedScene
 from autocolor.screens.gallery import (
     ELEMENTS,
     LINES,
-    NO_PICTURE,
     TILE_ELEMENTS,
     TILE_LINES,
     Gallery,
@@ -21,26 +19,25 @@ from autocolor.screens.gallery import (
     Tile,
     small_picture,
 )
-from autocolor.screens.naming import name_variant
+from autocolor.screens.naming import ask_name
 from autocolor.screens.screen import Content, Screen, Surroundings
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.steps import compare
 from autocolor.widgets.items import LIGHT_GRAY, Area, text
-from autocolor.widgets.menu import WORK
-from autocolor.widgets.widget import ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Pair, Widget, page_choice
+from autocolor.widgets.menu import WORK, paged
+from autocolor.widgets.widget import ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Pair, Widget
 
-ACROSS: Final = 4
-DOWN: Final = 4
-ON_PAGE: Final = ACROSS * DOWN
 STEP_ACROSS: Final = 124
 STEP_DOWN: Final = 111
 
 PLACES: Final = tuple(
     Area(left, top, left + TILE_ELEMENTS - 1, top + TILE_LINES - 1)
-    for top in range(WORK.top + 4, WORK.top + 4 + DOWN * STEP_DOWN, STEP_DOWN)
-    for left in range(8, 8 + ACROSS * STEP_ACROSS, STEP_ACROSS)
+    for top in range(WORK.top + 4, WORK.bottom - TILE_LINES, STEP_DOWN)
+    for left in range(8, WORK.right - TILE_ELEMENTS, STEP_ACROSS)
 )
-"""The places of the tiles."""
+"""The places of the tiles of a page, as many as there is room for."""
+
+ON_PAGE: Final = len(PLACES)
 
 EMPTY: Final = ("no variant is kept yet", "keep the scene as it is now, and come back to it later")
 """The lines of the screen before a variant is kept."""
@@ -61,54 +58,36 @@ class VariantsScreen(Screen):
         self._page = 0
         self._last: Rendering | None = None
         """The rendering of the last small picture; the next rendering reuses what did not change."""
-        self._gallery = Gallery[Scene]()
+        self._gallery = Gallery()
 
     # The small pictures.
 
-    @property
-    def _pages(self) -> list[list[str]]:
-        """The names of the variants, page by page; one page if there are none."""
-        names = list(self.session.studio.variants)
-        return [names[first : first + ON_PAGE] for first in range(0, len(names), ON_PAGE)] or [[]]
-
-    def _names(self) -> list[str]:
-        """The variants of this page."""
-        pages = self._pages
-        return pages[min(self._page, len(pages) - 1)]
-
-    def _scenes(self) -> list[Scene]:
-        """The scenes of this page."""
-        return [self.session.studio.variants[name].scene for name in self._names()]
-
     def build(self, around: Surroundings) -> Content:
-        scenes = self._scenes()
-        wanted = {scene: partial(self._small_picture, scene) for scene in scenes}
-        lines = () if scenes else EMPTY
+        help = "The next page of variants; at the left end, the page before."
+        turn = partial(setattr, self, "_page")
+        variants = [(name, each.scene) for name, each in self.session.studio.variants.items()]
+        shown, turning = paged(variants, ON_PAGE, self._page, help, turn)
         return Content(
             items=[
                 text(line, 16, WORK.top + ROW_LINES * number + TEXT_DOWN, LIGHT_GRAY)
-                for number, line in enumerate(lines)
+                for number, line in enumerate(() if shown else EMPTY)
             ],
             loads=self._gallery.loads,
-            rows=self._rows,
-            widgets=[
-                self._gallery.framed(scene, self._tile(name).at(area))
-                for name, scene, area in zip(self._names(), scenes, PLACES, strict=False)
-            ],
-            idle=partial(self._gallery.advance, wanted),
+            rows=lambda: [*self._rows(), *turning],
+            widgets=[self._tile(*each, area) for each, area in zip(shown, PLACES, strict=False)],
+            idle=lambda: self._gallery.advance(
+                {scene: partial(self._small_picture, scene) for _, scene in shown}
+            ),
         )
 
-    def _tile(self, name: str) -> Tile:
+    def _tile(self, name: str, scene: Scene, area: Area) -> Tile:
         help = f"Variant {name}: a click chooses it, another renames it"
-        return Tile(name, help, run=partial(self._pick, name), is_chosen=name == self._present)
+        tile = Tile(name, help, run=partial(self._pick, name), is_chosen=name == self._present)
+        return self._gallery.framed(scene, tile.at(area))
 
     def _small_picture(self, scene: Scene) -> Small:
-        try:
-            self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
-            return Small(small_picture(scene, self._last.picture))
-        except InputError:
-            # At this size a surface that the whole picture hides may be visible, and too bright.
-            return NO_PICTURE
+        self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
+        return Small(small_picture(scene, self._last.picture))
 
     def enter(self) -> None:
         if self._present:
@@ -129,7 +108,7 @@ class VariantsScreen(Screen):
     def _rows(self) -> Sequence[Widget]:
         name = self._present
         why_not = "" if name else "no variant is kept yet"
-        rows: list[Widget] = [
+        return [
             Button("keep", "Keep the scene as it is now under a free letter.", run=self._keep),
             Entry("keep as", "Keep the scene under a name of your own.", take=self._keep_as),
             Gap("chosen gap"),
@@ -150,16 +129,10 @@ class VariantsScreen(Screen):
             ),
             Button("drop", f"Drop variant {name}.", why_not, run=self._drop, value=name),
         ]
-        pages = len(self._pages)
-        if pages > 1:
-            help = "The next page of variants; at the left end, the page before."
-            page = min(self._page, pages - 1)
-            rows.append(page_choice(help, page, pages, partial(setattr, self, "_page")))
-        return rows
 
     def _pick(self, name: str) -> None:
         if name == self._present:
-            name_variant(self.session, name, self._choose)
+            self._ask_name()
         self._choose(name)
 
     def _choose(self, name: str) -> None:
@@ -168,7 +141,15 @@ class VariantsScreen(Screen):
 
     def _keep(self) -> None:
         self._keep_as(None)
-        name_variant(self.session, self._chosen, self._choose)
+        self._ask_name()
+
+    def _ask_name(self) -> None:
+        ask_name(self.session, "variant", self._present, partial(self._rename, self._present))
+
+    def _rename(self, name: str, new: str) -> None:
+        if new != name:
+            self.session.studio.rename_variant(name, new)
+        self._choose(new)
 
     def _keep_as(self, name: str | None) -> None:
         name = self.session.studio.keep_variant(name)

@@ -17,21 +17,15 @@ from autocolor.files.palette_file import Palette
 from autocolor.journal.history import History
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene
-from autocolor.screens.action import DRAG, WHEEL, Action
+from autocolor.screens.action import DRAG, NO_SOURCE, WHEEL, Action, EditSource
 from autocolor.screens.board import Board
 from autocolor.screens.effects import tell_effect
 from autocolor.screens.entries_screen import EntriesScreen
-from autocolor.screens.file_actions import (
-    FileOnDisk,
-    bring_paints,
-    open_file,
-    remark,
-    save_screenshot,
-)
+from autocolor.screens.file_actions import FileOnDisk, bring_paints, open_file, remark, save_screenshot
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
-from autocolor.screens.input import Gesture, Mouse, Unit, bound_to
-from autocolor.screens.keys import BINDINGS, rows_of_help
+from autocolor.screens.input import Gesture, Mouse, Unit
+from autocolor.screens.keys import BINDINGS, bound_to, rows_of_help
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
@@ -55,10 +49,6 @@ from ramtek_emu import HostPort, RamtekError
 
 class Viewer:
     """The interactive system with one scene on a display. `folder` is where new files are saved."""
-
-    studio: Studio
-    session: Session
-    board: Board
 
     def __init__(self, scene: Scene | History, display: HostPort, folder: Path | None = None) -> None:
         self.display = display
@@ -134,9 +124,18 @@ class Viewer:
 
     def _press(self, name: str, control: bool, shift: bool, alt: bool, typed: str, repeated: bool) -> bool:
         """Offer a key to the typed text, the menu, the screen and the key bindings, in this order."""
-        if not control and not alt and self._type(name, typed, repeated):
-            return True
-        chosen = bound_to(BINDINGS, name, control, shift, alt, typed)
+        board = self.board
+        if not control and not alt:
+            if board.typing.is_on:
+                return self._do(NO_SOURCE, lambda: board.typing.key(name, typed))
+            if self._do(
+                ("key", name),
+                lambda: board.key(name, typed) or board.content.key(name, typed),
+                repeated,
+                repeated,
+            ):
+                return True
+        chosen = bound_to(name, control, shift, alt, typed)
         if chosen is None:
             return False
         binding, number = chosen
@@ -144,15 +143,6 @@ class Viewer:
             # A switch would flip for as long as its key is down.
             return True
         return self._do(chosen, lambda: binding.run(self, number), repeated and binding.held, binding.held)
-
-    def _type(self, name: str, typed: str, repeated: bool) -> bool:
-        """Offer a key to the text that is being typed, the menu and the screen."""
-        board, source = self.board, ("key", name)
-        if board.typing.is_on:
-            return self._do(None, lambda: board.typing.key(name, typed))
-        return self._do(source, lambda: board.key(name, typed), repeated, repeated) or self._do(
-            source, lambda: board.content.key(name, typed), repeated, repeated
-        )
 
     def on_release(self, name: str) -> None:
         """Handle the release of a key."""
@@ -202,7 +192,7 @@ class Viewer:
             board.take(gesture)
         elif kind == "wheel":
             # On each widget the wheel makes a step of its own.
-            board.point_at(gesture)
+            board.take(gesture._replace(kind="hover"))
             self._do((WHEEL, board.lit and board.lit.key), lambda: board.take(gesture), True, True)
         elif kind == "drag":
             self._do((DRAG, self._drags), lambda: board.take(gesture), True, True)
@@ -216,7 +206,7 @@ class Viewer:
     def _has_left_text(self) -> bool:
         """Leave the text that is being typed, if any; returns False if the text is refused and stays open."""
         if self.board.typing.is_on:
-            self._do(None, self.board.typing.leave)
+            self._do(NO_SOURCE, self.board.typing.leave)
         return not self.board.typing.is_on
 
     def on_tick(self, is_at_rest: bool = True) -> None:
@@ -227,7 +217,7 @@ class Viewer:
         self._watching.advance()
         if is_at_rest and not (self.board.is_dragging or self._watching.is_on):
             self._take_changes()
-        has_ended = is_at_rest and self._action.kind != WHEEL and not self.board.is_dragging
+        has_ended = is_at_rest and self._action.source[0] != WHEEL and not self.board.is_dragging
         rests = has_ended or self._action.has_rested
         if rests and (self.studio.is_coarse or self.session.moving):
             self.session.moving = False
@@ -246,7 +236,7 @@ class Viewer:
     def _reopen_by(self, run: Callable[[], object]) -> bool:
         """Run an action that may open a scene without the user's pointing; returns as `_do`."""
         before = self.session.scene
-        taken = self._do(None, run)
+        taken = self._do(NO_SOURCE, run)
         if self.session.scene is not before:
             # The thing that is picked or typed into may be gone.
             self.board.release()
@@ -271,7 +261,7 @@ class Viewer:
             # The lines come in over the whole page. Its items are drawn after the last line.
             return
         if self.session.watches:
-            self.watch()
+            self._watch()
             return
         has_turned = self.board.turn()
         if has_turned:
@@ -309,7 +299,7 @@ class Viewer:
             self.session.warn(error)
 
     def _do(
-        self, source: object, run: Callable[[], object], continues: bool = False, moving: bool = False
+        self, source: EditSource, run: Callable[[], object], continues: bool = False, moving: bool = False
     ) -> bool:
         """Run the action of a key or a gesture; returns False if it does nothing here."""
         self._watching.end()
@@ -334,7 +324,7 @@ class Viewer:
         self._update()
         return may_close
 
-    def watch(self) -> None:
+    def _watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
         self.session.watches = False
         self.session.turn_to(PICTURE)
@@ -352,7 +342,7 @@ class Viewer:
         """
         board, session = self.board, self.session
         if board.is_dragging:
-            if self._action.was_by((DRAG, self._drags)):
+            if self._action.source == (DRAG, self._drags):
                 self.studio.take_back()
                 session.tell("taken back")
             self._mouse.forget()
@@ -384,7 +374,8 @@ class Viewer:
         self.session.turn_to(PICTURE)
         self.session.comparing.end()
         self.board.turn()
-        self.board.clear()
+        self.board.take(Gesture("hover", -1, -1))
+        self.board.close()
         self.session.tell("")
         self._update()
         self._sheet.show(self.board.page()._replace(items=self.board.content.items))

@@ -12,9 +12,6 @@ A key is made in four steps:
 4. The low bits of a key hold the number of the polygon. So of equally near polygons the highest number is
    visible: a polygon that faces the eye if there is one, and of those the last in the polygon table, as a
    decal on its ground should be.
-
-Measured and rejected: keys from three nodes of each polygon, rounded once. The keys of 4 to 608 of
-2,000 pairs of coplanar polygons differed.
 """
 
 from __future__ import annotations

@@ -1,16 +1,11 @@
 """The polygon that is visible at each pixel, for all scan lines at once.
 
-Paper: "Introduction", [3, 21]: Watkins' scan-line algorithm. Departs: only the geometry is Watkins': the
-edges, where the lines cross them, and the segments between the crossings. He keeps the active segments of a
-line sorted by x and takes the nearest in each interval; here a depth buffer finds the nearest segment at each
-pixel, by keys that carry the number of the polygon. So nothing is sorted, and every step is one array
-operation over the segments of all lines, some hundred times faster in numpy. The literal algorithm is in
-`watkins`; both see the same polygon at every pixel, and tests hold that.
-
-Measured and rejected: sorting the fragments (argsort and reduceat take 7 times, lexsort 37 times as long as
-`np.maximum.at`), a loop over the lines (12 times), points in object space (twice the time of a whole frame),
-depths as floats (twice the passes over the fragments), scattering the crossings to their rows (twice as long
-as walking around the polygons in the order of the rows).
+Paper: "Introduction", [3, 21]: Watkins' scan-line algorithm. Departs: a depth buffer finds the nearest
+segment at each pixel; Watkins sorts the active segments of a line by x. The geometry is his: the edges, where
+the lines cross them, and the segments between the crossings. The keys of the depth buffer carry the number of
+the polygon. So nothing is sorted, and every step is one array operation over the segments of all lines, some
+hundred times faster in numpy. The literal algorithm is in `watkins`; both see the same polygon at every
+pixel, and tests hold that.
 """
 
 from __future__ import annotations
@@ -251,8 +246,8 @@ def _least_of_rows(keys: Numbers, size: int) -> Numbers:
 # Interpolation along visible spans.
 #
 # Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
-# interpolation, along the edges and then along the span. Departs: in 1983 that was linear in the picture, as
-# in a scene with `interpolation = "linear"` here. Otherwise it is perspective-correct: the normal is halfway
+# interpolation, along the edges and then along the span. Departs: normals are interpolated in perspective; in
+# 1983 that was linear in the picture, as here with `interpolation = "linear"`. So the normal is halfway
 # between the normals of two nodes where the point is halfway between the nodes on the surface, not in the
 # picture.
 
@@ -465,10 +460,10 @@ def _by_number(number: Numbers) -> Indices:
 
 # Interpolation within triangles.
 #
-# Departs: in a scene with `interpolation = "invariant"`, every quad is two triangles. In a triangle all that
-# is interpolated is linear on the surface, so the direction of the scan lines does not matter. Warped quads
-# are cut in the projection. The depth test works on the other quads as they are, and the visible spans are
-# cut where their lines cross the diagonal.
+# Departs: with `interpolation = "invariant"`, every quad is two triangles. In a triangle all that is
+# interpolated is linear on the surface, so the direction of the scan lines does not matter. Warped quads are
+# cut in the projection. The depth test works on the other quads as they are, and the visible spans are cut
+# where their lines cross the diagonal.
 #
 # Measured and rejected: the diagonal as a third edge between the two edges that a line crosses. The visible
 # surfaces of the coupe take a quarter longer than along scan lines, and of a million quads a third.

@@ -54,9 +54,6 @@ THIN: Final = 2
 LONGEST_LABEL: Final = ROW_CHARACTERS - 4
 """The characters of a label that has room for a short number beside it."""
 
-BESIDE_BOX: Final = "  "
-"""The room for the box at the right of a number."""
-
 
 @dataclass(frozen=True)
 class Bar(Widget):
@@ -114,8 +111,8 @@ class Bar(Widget):
 
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
-        # The box stands at the right of the number.
-        value = self.number + ("" if self.flip is None else BESIDE_BOX)
+        # There is room for the box at the right of the number.
+        value = self.number + ("" if self.flip is None else "  ")
         items = self.row(lit, self.label, value)
         if self.flip is not None:
             items += box_items(self._box, self.value is not None, self.ink, background)

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Numbers, Words
+from autocolor.arrays import Floats, Numbers, Words
 from autocolor.checks import printable
 from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import instructions
@@ -158,11 +158,6 @@ def joined(positions: Floats | Sequence[tuple[float, float]]) -> Floats:
     return np.concatenate([places[:-1], places[1:]], axis=1)
 
 
-def between(starts: Floats, ends: Floats) -> Floats:
-    """The strokes from positions to other positions, both (n, 2)."""
-    return np.concatenate([starts, ends], axis=1)
-
-
 def together(strokes: Sequence[Floats]) -> Floats:
     """All strokes of several arrays, (n, 4)."""
     return np.concatenate([np.empty((0, 4)), *strokes])
@@ -265,13 +260,7 @@ def pointer(element: int, line: int, towards: int, word: int, ground: int = NIGH
     return image(np.where(shape, word, ground).astype(np.uint16), left, top)
 
 
-def _triangle() -> Booleans:
-    across, down = np.arange(REACH + 1), np.arange(-REACH, REACH + 1)
-    shape: Booleans = across + np.abs(down)[:, None] <= REACH
-    return shape
-
-
-_RIGHT: Final = _triangle()
+_RIGHT: Final = np.arange(REACH + 1) + np.abs(np.arange(-REACH, REACH + 1))[:, None] <= REACH
 _POINTERS: Final = (_RIGHT, _RIGHT.T, _RIGHT[:, ::-1], _RIGHT.T[::-1])
 
 

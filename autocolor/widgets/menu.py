@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 from autocolor.widgets.items import (
     CHARACTER,
@@ -27,16 +27,7 @@ from autocolor.widgets.items import (
     pointer,
     text,
 )
-from autocolor.widgets.widget import (
-    MARGIN,
-    ROW_LINES,
-    TEXT_DOWN,
-    Button,
-    Choice,
-    Place,
-    Widget,
-    page_choice,
-)
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Place, Widget, page_choice
 
 MESSAGE_LINES: Final = 16
 """The height of the message line, at the bottom of every screen."""
@@ -87,20 +78,39 @@ def page_of_menu(
 
     Each page ends with the `last` rows. If there are several pages, the row before them turns to another.
     """
-    room = MENU.height - lines_of(last)
-    pages, used = [list(rows)], 0
+    room, pages = MENU.height - lines_of(last), list[list[Widget]]([[]])
     if lines_of(rows) > room:
-        pages = [[]]
-        for row in rows:
-            if used + row.row_lines > room - ROW_LINES:
-                pages.append([])
-                used = 0
-            pages[-1].append(row)
-            used += row.row_lines
+        room -= ROW_LINES
+    for row in rows:
+        if lines_of([*pages[-1], row]) > room:
+            pages.append([])
+        pages[-1].append(row)
     number = min(number, len(pages) - 1)
     if len(pages) > 1:
         pages[number].append(page_choice("The other rows of this menu.", number, len(pages), turn, MORE))
     return laid_out([*pages[number], *last])
+
+
+Thing = TypeVar("Thing")
+
+
+def paged(
+    things: Sequence[Thing],
+    size: int,
+    page: int,
+    help: str,
+    turn: Callable[[int], object],
+    label: str = "page",
+    within: str = "",
+) -> tuple[Sequence[Thing], list[Widget]]:
+    """The things of a page of `size`, and the row that turns to other pages, if there are any.
+
+    Pages are counted from 0; beyond the last page, it is the last page. See `page_choice`.
+    """
+    pages = max(1, -(-len(things) // size))
+    page = min(page, pages - 1)
+    turning = page_choice(help, page, pages, turn, label, within)
+    return things[page * size : (page + 1) * size], [turning] if pages > 1 else []
 
 
 # The list of a choice with many names: at the left of its row, in as many columns as it needs.
@@ -140,6 +150,7 @@ def list_of(
     size = len(names) if len(names) <= most else most - 1
     if page is None:
         page = names.index(present) // size if present in names else 0
+    shown, turning = paged(names, size, page, "The other names.", turn, MORE, choice.key)
     cells: list[Widget] = [
         Button(
             name,
@@ -148,11 +159,10 @@ def list_of(
             run=partial(take, name),
             is_chosen=name == present,
         )
-        for name in names[page * size : (page + 1) * size]
+        for name in shown
     ]
     beside = next((number for number, cell in enumerate(cells) if cell.label == present), 0)
-    if size < len(names):
-        cells.append(page_choice("The other names.", page, -(-len(names) // size), turn, MORE, choice.key))
+    cells += turning
     columns = -(-len(cells) // LIST_ROWS)
     rows = -(-len(cells) // columns)
     top = choice.area.top - ROW_LINES * (beside % rows)

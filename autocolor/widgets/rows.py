@@ -30,16 +30,8 @@ from autocolor.scene.kinds import (
 )
 from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References
 from autocolor.widgets.bars import Bar, bar_within, rounded_to
-from autocolor.widgets.items import CHARACTER, Item
-from autocolor.widgets.widget import (
-    MARGIN,
-    Choice,
-    Entry,
-    Place,
-    Switch,
-    Widget,
-    page_choice,
-)
+from autocolor.widgets.items import CHARACTER
+from autocolor.widgets.widget import MARGIN, Button, Choice, Entry, Place, Switch, Widget, page_choice
 
 Put = Callable[[Mapping[str, object]], object]
 """Changes fields of the row, by name."""
@@ -98,31 +90,19 @@ class World(NamedTuple):
         farthest = corners[sign > 0][AXES.index(axis)]
         return rounded_to(farthest + math.copysign(margin + step, sign), step)
 
-    def range_of_lengths(self, is_zero_left_out: bool) -> BarRange:
-        """The usual range of a length: up to the whole size of the object."""
-        usual = bar_within(0, self.size)
-        return usual._replace(low=usual.step) if is_zero_left_out else usual
-
 
 @dataclass(frozen=True)
-class AddRow(Widget):
-    """A row with the names of absent things, each with its help; a pick on a name adds the thing."""
+class AddRow(Button):
+    """A row whose value names absent things, each with its help; a pick on a name adds the thing."""
 
     names: Mapping[str, str] = field(default_factory=dict)
     add: Callable[[str], object] = lambda _: None
 
-    @property
-    def _value(self) -> str:
-        return " ".join(f"+{name}" for name in self.names)
-
-    def items(self, lit: bool) -> list[Item]:
-        return self.row(lit, self.label, self._value)
-
     def _name_at(self, place: Place) -> str:
         """The name at a place; at the left of all names, the first."""
-        start = self.area.right + 1 - MARGIN - CHARACTER * len(self._value)
+        start = self.area.right + 1 - MARGIN - CHARACTER * len(self.value)
         before = max(0, (place.element - start) // CHARACTER)
-        return list(self.names)[self._value[:before].count(" ")]
+        return list(self.names)[self.value[:before].count(" ")]
 
     def hint_at(self, place: Place) -> str:
         name = self._name_at(place)
@@ -170,8 +150,8 @@ def _rows_in(
         else:
             yield from _rows_of_field(menu, name, column, value)
     if absent:
-        add = partial(_put_value, menu.put, value={})
-        yield AddRow(menu.label.strip(), names=absent, add=add)
+        added, add = " ".join(f"+{name}" for name in absent), partial(_put_value, menu.put, value={})
+        yield AddRow(menu.label.strip(), value=added, names=absent, add=add)
 
 
 def _rows_of_field(menu: _Menu, name: str, column: Column, value: Any) -> Iterator[Widget]:
@@ -211,16 +191,10 @@ def _rows_of_field(menu: _Menu, name: str, column: Column, value: Any) -> Iterat
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested):
         axis, edge = name if name in AXES else "", vars(value).get("edge_width", 0.0)
+        if "on" in fields_of(type(value)):
+            yield Switch(shown, help, is_on=value.on, flip=partial(_put_value, put, "on", not value.on))
         # The menu is narrow: put only the row's own name before the names of its fields.
-        yield from _rows_of_row(_Menu(put, menu.world, f"{name} ", axis, edge), shown, help, value)
-
-
-def _rows_of_row(menu: _Menu, label: str, help: str, row: Row) -> Iterator[Widget]:
-    """The rows of a nested row, after its own switch if it has one."""
-    if "on" in fields_of(type(row)):
-        is_on = vars(row)["on"]
-        yield Switch(label, help, is_on=is_on, flip=partial(_put_value, menu.put, "on", not is_on))
-    yield from _rows_in(menu, row, ("on",))
+        yield from _rows_in(_Menu(put, menu.world, f"{name} ", axis, edge), value, ("on",))
 
 
 def _put_value(put: Put, name: str, value: object) -> object:
@@ -237,7 +211,9 @@ def _bar(menu: _Menu, label: str, name: str, column: Column, value: float | None
     axis, kind, is_whole = menu.axis, column.kind, isinstance(column.kind, Whole)
     usual = column.bar or BarRange(0, 1, 0.01)
     if column.unit == WORLD_UNITS and isinstance(kind, Number) and kind.at_least == 0:
-        usual = menu.world.range_of_lengths(is_zero_left_out=kind.above)
+        # A length reaches up to the whole size of the object.
+        usual = bar_within(0, menu.world.size)
+        usual = usual._replace(low=usual.step) if kind.above else usual
     elif column.unit == WORLD_UNITS:
         usual = menu.world.range_of(axis)
     endless = kind.endless if isinstance(kind, Number) else None
@@ -271,8 +247,7 @@ def _vector_rows(menu: _Menu, label: str, column: Column, vector: Vector, put: P
         return put((*vector[:number], value, *vector[number + 1 :]))
 
     for number, axis in enumerate(AXES):
-        is_place = column.unit == WORLD_UNITS
-        usual = menu.world.range_of(axis) if is_place else BarRange(-1, 1, 0.01)
+        usual = menu.world.range_of(axis) if column.unit == WORLD_UNITS else BarRange(-1, 1, 0.01)
         yield Bar(
             f"{label} {axis}",
             _help(column),
@@ -296,21 +271,12 @@ def _curve_rows(
     for number, (angle, share) in enumerate(shares.items()):
         usual = bar_within(0 if number else kind.least, 1)
         yield Bar(
-            f"at {angle:g} degrees",
-            help,
-            value=share,
-            **usual._asdict(),
-            put=partial(put_share, angle),
+            f"at {angle:g} degrees", help, value=share, **usual._asdict(), put=partial(put_share, angle)
         )
 
 
 def _list_rows(
-    label: str,
-    column: Column,
-    table: str,
-    value: Sequence[str] | None,
-    put: PutValue,
-    tables: TableNames,
+    label: str, column: Column, table: str, value: Sequence[str] | None, put: PutValue, tables: TableNames
 ) -> Iterator[Widget]:
     """A switch that gives an empty list; below it a switch for each name of a page."""
     begun = () if value is None else None

@@ -73,14 +73,9 @@ class Widget:
         """The name by which the widget is recognized on its screen when it is made again."""
         return f"{self.within}.{self.label}" if self.within else self.label
 
-    @property
-    def hint(self) -> str:
-        """The text of the message line while the pointer is over it."""
-        return self.why_not or self.help or self.label
-
     def hint_at(self, place: Place) -> str:
         """The text of the message line while the pointer is at a place over it."""
-        return self.hint
+        return self.why_not or self.help or self.label
 
     @property
     def row_lines(self) -> int:
@@ -285,11 +280,11 @@ class Choice(Widget):
         """Whether a menu shows its names in a list."""
         return len(self.names) > MOST_IN_TURN and not self.turns_pages
 
-    @property
-    def hint(self) -> str:
+    def hint_at(self, place: Place) -> str:
+        hint = super().hint_at(place)
         if self.why_not or not self.has_list:
-            return super().hint
-        return f"{super().hint.removesuffix('.')}; a click lists all {len(self.names)}."
+            return hint
+        return f"{hint.removesuffix('.')}; a click lists all {len(self.names)}."
 
     @property
     def row_lines(self) -> int:
@@ -416,8 +411,8 @@ STEM_LETTERS: Final = 3
 def short_label(label: str, most: int) -> str:
     """A label of at most `most` characters. If it is longer, its longest word is shortened to a consonant.
 
-    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
-    ('normal refl.', 'x min.', 'cone angle')
+    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("concentration", 9)
+    ('normal refl.', 'x min.', 'concentr.')
     """
     excess = len(label) - most
     if excess <= 0:

@@ -6,7 +6,9 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,7 +16,6 @@ from typing import Any
 from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
     MISSING,
-    WORLD_UNITS,
     Column,
     Kind,
     Row,
@@ -23,7 +24,6 @@ from autocolor.scene.columns import (
     keys_of,
     to_plain,
 )
-from autocolor.scene.kinds import Number
 from autocolor.scene.lights import Flap, HalfSpace, Light
 from autocolor.scene.row_kinds import Nested, OneRowOf
 from autocolor.scene.scalar import Scalar
@@ -35,12 +35,15 @@ ROOT = Path(__file__).resolve().parents[2]
 
 HEAD = """# The columns
 
-Every table of a scene and every key, as `scene.toml`, `--set`, Python and picture files have them. The page
-is written from the columns in `autocolor/scene` by `python -m docs.generate.columns > docs/COLUMNS.md`.
+Every key of a scene, for `scene.toml`, `--set`, Python and picture files. Written by `python -m
+docs.generate.columns > docs/COLUMNS.md`.
 
-A key that has no default must be given; one whose default is "absent" may be left out. "On a bar" is the
-usual range of a number and its step where it is set by pointing, and what it starts with if it was absent;
-typed numbers may be any that the value's own rule allows. The last column says what an edit of it costs:
+After a key come its value and its default. A key with neither a default nor the word "optional" is required;
+of choices, the first is the default. Angles are in degrees, positions and lengths in world units. A
+**vector** is a list of three finite numbers up to 1e36. A **color** is `"#rrggbb"`, a name such as `"red"`,
+or three whole numbers from 0 to 255. A **name** has at least one character.
+
+Words in italics say what an edit computes again:
 """
 
 TABLES: tuple[tuple[str, str, type[Row]], ...] = (
@@ -48,11 +51,10 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     ("`[view]`", "", View),
     (
         "`[[views]]`",
-        "Named views: rows with a name and the keys of `[view]`, in any number up to"
-        f" {MOST_VIEWS}. Any of them can become the view; an edit of them costs nothing.",
+        f"Up to {MOST_VIEWS} named views, with the keys of `[view]`.",
         NamedView,
     ),
-    ("`[scalar]`", "It colors the surfaces by a scalar of the mesh, or by a computed one.", Scalar),
+    ("`[scalar]`", "", Scalar),
     ("`[[mesh]]`", "A mesh: a `file`, or `nodes` and `polygons`.", MeshEntry),
     ("`[parts.NAME]`", "", Part),
     ("`[surfaces.NAME]`", "", Surface),
@@ -60,9 +62,8 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     ("`flaps.x`, `flaps.y`, `flaps.z` of a light", "", Flap),
     (
         "`half_spaces.NAME` of a light",
-        "A half-space, such as `half_spaces.left = { point = [0, 0, 0], direction = [1, 0, 0] }`."
-        " `--set` and Python change single keys of an existing half-space; `none`, in Python `None`, removes"
-        " it.",
+        "For example `half_spaces.left = { point = [0, 0, 0], direction = [1, 0, 0] }`. "
+        "`none` removes a half-space.",
         HalfSpace,
     ),
 )
@@ -76,95 +77,93 @@ LEFT_OUT = {
 }
 """What stands in a header, or has a table of its own."""
 
-WORDS = "all words, the entries that differ"
+SHORT = (
+    (r"three finite numbers of at most 1e36", "vector"),
+    (r'"#rrggbb", a name such as "red", or three whole numbers from 0 to 255', "color"),
+    (r"true or false", "boolean"),
+    (r"a string of at least one character", "name"),
+    (r"a list of names", "names"),
+    (r"a finite number of at least 0", "0 or more"),
+    (r"a finite number", "number"),
+    (r"a number from ", ""),
+    (r"a number above", "above"),
+    (r"a whole number from", "whole number,"),
+    (r"a list of (\d+) ", r"\1 "),
+    (r"two finite numbers, the second above the first", "two rising numbers"),
+    (
+        r"'auto', a percentage .*",
+        "'auto', '50 %' to '100 %', or ranges such as { object = [0.0, 1.3] }",
+    ),
+    (
+        r"2 to 91 points .*",
+        "2 to 91 points: angles rise from 0 to 90, shares are 0 to 1, the first from 0.001",
+    ),
+    (r"the name of a color scale, or a list of", "a name, or"),
+    (r"a table of ", ""),
+)
+"""Rules of values, and how the page writes them."""
 
 COSTS = {
-    Tier.NOTHING: ("nothing", "nothing"),
-    Tier.ENTRIES: ("entries of the lookup table", "those entries, no word"),
-    Tier.LEVELS: ("the levels", WORDS),
-    Tier.MIX: ("the weighted sum of the lights", WORDS),
-    Tier.LIGHT: ("one light, or all lights on one surface", WORDS),
-    Tier.FRAME: ("everything", WORDS),
+    Tier.ENTRIES: "some entries of the lookup table; no word is sent",
+    Tier.LEVELS: "the levels; from here on, all words are sent",
+    Tier.MIX: "the sum of the lights",
+    Tier.LIGHT: "one light, or all lights on one surface",
+    Tier.FRAME: "everything",
 }
-"""What an edit of each tier computes again, and what it sends to the display."""
-
-
-def tiers() -> Iterator[str]:
-    """The table of the costs of edits."""
-    yield "| an edit costs | computed again | sent to the display |"
-    yield "|---|---|---|"
-    for tier, (computed, sent) in COSTS.items():
-        yield f"| {tier.name.lower()} | {computed} | {sent} |"
-    yield ""
+"""What an edit of each tier computes again; Tier.NOTHING says it already."""
 
 
 def document() -> str:
     """The whole reference."""
-    return "\n".join([HEAD, *tiers(), *(line for table in TABLES for line in lines_of(*table))]) + "\n"
+    costs = "".join(f"- *{tier.name.lower()}*: {what}\n" for tier, what in COSTS.items())
+    return "\n".join([HEAD, costs, *(line for table in TABLES for line in lines_of(*table))])
 
 
 def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
-    """The lines of one table."""
+    """The lines of one table: its usual tier, and a definition of each key."""
+    columns = {key: at for key, at in keys_of(cls).items() if key not in LEFT_OUT.get(cls, ())}
+    usual = Counter(column.tier for column, _ in columns.values()).most_common(1)[0][0]
     yield f"## {title}\n"
-    if text:
-        yield f"{text}\n"
-    yield "| key | what it is | unit | value | default | on a bar | an edit costs |"
-    yield "|---|---|---|---|---|---|---|"
-    for key, (column, field) in keys_of(cls).items():
-        if key not in LEFT_OUT.get(cls, ()):
-            rule = column.kind.rule().removeprefix("must be ")
-            text = f"{column.help}{going_with(fields_of(cls)[field].kind, key)}"
-            cells = (
-                f"`{key}`",
-                text,
-                column.unit,
-                rule,
-                default(cls, key, field),
-                on_a_bar(column),
-                tier(column),
-            )
-            yield f"| {' | '.join(cells)} |"
-    yield ""
+    yield f"{text} Edits: *{usual.name.lower()}*\n".lstrip()
+    for key, (column, field) in columns.items():
+        given = ", ".join(filter(None, (value_of(column), default(cls, key, field))))
+        cost = "" if column.tier == usual else f" (*{column.tier.name.lower()}*)"
+        of = going_with(fields_of(cls)[field].kind, key)
+        yield f"**`{key}`**{of}: {given}. {column.help}{cost}\n"
+
+
+def value_of(column: Column) -> str:
+    """The rule of a value in short, and its unit if the head does not say it."""
+    rule = column.kind.rule().removeprefix("must be ")
+    for long, short in SHORT:
+        rule = re.sub(f"^{long}", short, rule)
+    return f"{rule} {column.unit}" if column.unit == "percent" else rule
 
 
 def going_with(kind: Kind[Any], key: str) -> str:
-    """A sentence with the variants that have the key, of inline rows too; nothing for any other key."""
+    """The variants that have the key, of inline rows too, in brackets; nothing for any other key."""
     if isinstance(kind, Nested) and kind.inline:
         for name, field in fields_of(kind.row_class).items():
             if isinstance(field.kind, OneRowOf) and key != name:
                 return going_with(field.kind, key)
     if not isinstance(kind, OneRowOf):
         return ""
-    names = [repr(name) for name, cls in kind.classes.items() if key in keys_of(cls)]
-    return f" Goes with {' or '.join(names)}." if names else ""
-
-
-def on_a_bar(column: Column) -> str:
-    """The usual range and the step of a number, and what it starts with when it is switched on, if absent."""
-    bar = column.bar
-    if bar is None and column.unit == WORLD_UNITS:
-        is_length = isinstance(column.kind, Number) and column.kind.at_least == 0
-        return "up to the size of the object" if is_length else "that of the object"
-    if bar is None:
-        return ""
-    start = "" if column.start is None else f", from {column.start:g}"
-    return f"{bar.low:g} to {bar.high:g} by {bar.step:g}{start}"
-
-
-def tier(column: Column) -> str:
-    """The cost of an edit, in lower case."""
-    return column.tier.name.lower()
+    names = [name for name, cls in kind.classes.items() if key in keys_of(cls)]
+    return f" ({', '.join(names)})" if names else ""
 
 
 def default(cls: type[Row], key: str, field: str) -> str:
-    """The default of a key, or nothing."""
+    """The default of a key, or that it is optional; nothing if it is required, or for the first choice."""
     column = fields_of(cls)[field]
     if column.default is MISSING:
         return ""
     if column.default is None:
-        return "absent"
-    written = {**parameters(column.kind), **column.kind.to_plain(field, column.default)}
-    return f"`{json.dumps(written[key])}`" if written.get(key) not in (None, {}) else "absent"
+        return "optional"
+    written = {**parameters(column.kind), **column.kind.to_plain(field, column.default)}.get(key)
+    if written in (None, {}):
+        return "optional"
+    is_first = value_of(keys_of(cls)[key].column).startswith(repr(written))
+    return "" if is_first else f"default `{json.dumps(written)}`"
 
 
 def parameters(kind: Kind[Any]) -> dict[str, object]:

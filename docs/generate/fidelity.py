@@ -1,32 +1,31 @@
-"""The fidelity ledger: every line of the sources that says where a formula or a number comes from.
+"""The fidelity ledger: the paper, where the program differs, and the sources of the instructions.
 
-`Paper:` Warn's paper; `Hardware:` a source about the RAMTEK by its key; `Assumed:` our choice where sources
-are silent; `Departs:` where the program knowingly differs; `Limit:` a bound that no source asks for, such as
-the largest file that is read. `python -m docs.generate.fidelity > docs/FIDELITY.md` writes the document.
+Marks in docstrings and comments say where a formula or a number comes from. `Paper:` Warn's paper;
+`Hardware:` a source about the RAMTEK by its key; `Assumed:` our choice where sources are silent; `Departs:`
+where the program knowingly differs; `Limit:` a bound that no source asks for, such as the largest file that
+is read. `python -m docs.generate.fidelity > docs/FIDELITY.md` writes the document, with the departures.
+`python -m docs.generate.fidelity --assumed` lists the statements of a mark with their lines in the code.
 """
 
 from __future__ import annotations
 
-import ast
-import io
 import re
 import sys
-import tokenize
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from ramtek_emu.instruction_set.table import OPERANDS_1, OPERANDS_2, SUBSTANTIATED
+
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("autocolor", "ramtek_emu")
-KINDS = {
-    "Paper": "What follows the paper",
-    "Hardware": "What follows a source about the hardware",
-    "Assumed": "What is our choice, where the sources are silent",
-    "Departs": "Where the program knowingly differs",
-    "Limit": "Bounds of our own on files, sizes and times",
-}
-MARK = re.compile(rf"(?P<bracket>\()?\b(?P<kind>{'|'.join(KINDS)}):\s+")
+KINDS = ("Paper", "Hardware", "Assumed", "Departs", "Limit")
+TEXT = re.compile(r'"""(?P<text>.*?)"""|(?P<comment>(?:^ *#[^\n]*\n)+)', re.DOTALL | re.MULTILINE)
+"""A docstring, or a run of comment lines."""
+
+MARK = re.compile(rf"\b({'|'.join(KINDS)}):\s")
+SENTENCE = re.compile(r"(?<=\.)(?<!\b[A-Z]\.) ")
+"""The space after a sentence. A period after an initial ends no sentence."""
 
 THE_PAPER = (
     (
@@ -128,90 +127,56 @@ THE_PAPER = (
 """A section or figure of the paper, the modules that are its subject, and the first of its tests."""
 
 
-class Line(NamedTuple):
-    """One statement: its kind, the module and the definition that it stands in, and its text."""
+HEAD = """# Fidelity
+
+Where the paper is built and tested, and where the program knowingly differs from it. The paper is D. R. Warn,
+"Lighting Controls for Synthetic Images", SIGGRAPH 1983.
+
+Where the paper and the sources about the hardware are silent, a note `Assumed:` in the code has our choice
+and its reason. This command lists the notes with their lines:
+
+```
+python -m docs.generate.fidelity --assumed
+```
+
+`--paper` and `--hardware` list what follows the paper and the sources about the hardware, and `--limit` our
+own bounds on files, sizes and times.
+
+## The paper, section by section
+
+The tests are in `tests/test_paper.py`, in the order of the paper.
+
+| section or figure | module | test |
+|---|---|---|
+"""
+
+
+class Statement(NamedTuple):
+    """What follows a mark: its kind, the file and the line of the mark, and its text."""
 
     kind: str
-    module: str
-    definition: str
+    path: str
+    line: int
     text: str
 
 
-@cache
-def lines_of_packages() -> list[Line]:
-    """All lines of both packages, module by module in the order of their sources."""
-    return [
-        line
-        for package in PACKAGES
-        for path in sorted((ROOT / package).rglob("*.py"))
-        for line in lines_of_source(path.read_text("utf-8"), module_of(path))
-    ]
+def statements() -> Iterator[Statement]:
+    """All statements of both packages, file by file."""
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.py")):
+            yield from statements_of(path.read_text("utf-8"), path.relative_to(ROOT).as_posix())
 
 
-def module_of(path: Path) -> str:
-    """The dotted name of a file under the root."""
-    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-
-
-def lines_of_source(source: str, module: str) -> Iterator[Line]:
-    """The lines in the texts and comments of a module."""
-    for definition, text in (*texts(ast.parse(source), ""), *comments(source)):
-        for kind, statement in statements(text):
-            yield Line(kind, module, definition, statement)
-
-
-def texts(node: ast.AST, definition: str) -> Iterator[tuple[str, str]]:
-    """Each text that stands alone, with the definition or the constant that it describes."""
-    described = definition
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, (ast.FunctionDef, ast.ClassDef)):
-            yield from texts(child, f"{definition}.{child.name}".lstrip("."))
-        elif isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant):
-            if isinstance(child.value.value, str):
-                yield described, child.value.value
-        else:
-            described = definition
-            target = child.targets[0] if isinstance(child, ast.Assign) else getattr(child, "target", None)
-            if isinstance(child, (ast.Assign, ast.AnnAssign)) and isinstance(target, ast.Name):
-                described = f"{definition}.{target.id}".lstrip(".")
-
-
-def comments(source: str) -> Iterator[tuple[str, str]]:
-    """Each run of comment lines as one text."""
-    run: list[str] = []
-    last = 0
-    for token in tokenize.generate_tokens(io.StringIO(source).readline):
-        if token.type != tokenize.COMMENT:
-            continue
-        if token.start[0] != last + 1 and run:
-            yield "", " ".join(run)
-            run = []
-        run.append(token.string.lstrip("# "))
-        last = token.start[0]
-    if run:
-        yield "", " ".join(run)
-
-
-def statements(text: str) -> Iterator[tuple[str, str]]:
-    """The kind and the words of each statement: to the next one, the end of its paragraph or its bracket."""
-    for paragraph in re.split(r"\n\s*\n", text):
-        marks = list(MARK.finditer(paragraph))
-        ends = [*[mark.start() for mark in marks[1:]], len(paragraph)][: len(marks)]
-        for mark, end in zip(marks, ends, strict=True):
-            words = " ".join(paragraph[mark.end() : end].split())
-            if mark["bracket"]:
-                words = words[: closing(words)]
-            yield mark["kind"], words.rstrip(" .;,(") + "."
-
-
-def closing(words: str) -> int:
-    """Where the bracket closes that was open before the words."""
-    depth = 1
-    for place, letter in enumerate(words):
-        depth += (letter == "(") - (letter == ")")
-        if depth == 0:
-            return place
-    return len(words)
+def statements_of(source: str, path: str) -> Iterator[Statement]:
+    """The statements of a source. Each ends before the next, or with its paragraph."""
+    for found in TEXT.finditer(source):
+        text = found["text"] or re.sub(r"^( *)#", r"\1 ", found[0], flags=re.MULTILINE)
+        start = found.start("text") if found["text"] else found.start()
+        marks = list(MARK.finditer(text))
+        for mark, end in zip(marks, [*(mark.start() for mark in marks[1:]), None], strict=False):
+            paragraph = re.split(r"\n\s*\n", text[mark.end() : end])[0]
+            line = source.count("\n", 0, start + mark.start()) + 1
+            yield Statement(mark[1], path, line, " ".join(paragraph.split()))
 
 
 def full_name(module: str) -> str:
@@ -221,49 +186,36 @@ def full_name(module: str) -> str:
 
 def document() -> str:
     """The ledger as a document."""
-    lines = lines_of_packages()
-    parts = [
-        "# Fidelity\n\nWhere every formula, number and rule comes from, collected from the sources by"
-        ' `python -m docs.generate.fidelity > docs/FIDELITY.md`. The paper is D. R. Warn, "Lighting Controls'
-        ' for Synthetic Images", SIGGRAPH 1983; [SOURCES.md](SOURCES.md) lists the sources about the'
-        " hardware by their keys.\n",
-        "\n## The paper: where each section and figure is built and tested\n\nThe tests are those of"
-        " `tests/test_paper.py`, which goes through the paper in its order.\n\n| section or figure | module |"
-        " test |\n|---|---|---|\n",
-    ]
+    parts = [HEAD]
     for place, modules, test in THE_PAPER:
         listed = ", ".join(f"`{full_name(module)}`" for module in modules)
         parts.append(f"| {place} | {listed} | `{test}` |\n")
-    for kind in ("Departs", "Assumed", "Paper", "Hardware", "Limit"):
-        parts.append(
-            f"\n## {kind}: {KINDS[kind][0].lower()}{KINDS[kind][1:]}\n\n| where | what |\n|---|---|\n"
-        )
-        for line in lines:
-            if line.kind == kind:
-                where = f"{line.module}: {line.definition}" if line.definition else line.module
-                text = line.text.replace("|", "\\|")
-                parts.append(f"| `{where}` | {text} |\n")
+    parts.append("\n## Where the program differs\n\n| where | what differs |\n|---|---|\n")
+    for statement in statements():
+        if statement.kind == "Departs":
+            parts.append(f"| `{statement.path}` | {first_sentence(statement.text)} |\n")
     return "".join(parts) + instructions_and_operands()
 
 
-def instructions_and_operands() -> str:
-    """The sources of every row of the instruction table, as a section of the ledger."""
-    from ramtek_emu.instruction_set.table import OPERANDS_1, OPERANDS_2, SUBSTANTIATED, UNIMPLEMENTED
+def first_sentence(text: str) -> str:
+    """The first sentence of a statement, with a capital."""
+    sentence = SENTENCE.split(text)[0]
+    return sentence[0].upper() + sentence[1:]
 
+
+def instructions_and_operands() -> str:
+    """The formats of the display's instructions and operands, with their sources."""
     parts = [
-        "\n## Instructions and operands: where each format comes from\n\nThe rows of"
-        " `ramtek_emu.instruction_set.table`.\n\n| opcode | instruction | words that follow | source |\n"
-        "|---|---|---|---|\n",
+        "\n## Instructions and operands\n\nThe opcodes of the display, the words that follow, and the"
+        " [sources](SOURCES.md) of each format. NCAR ramtek.h has the numbers and the names of other opcodes;"
+        " `ramtek_emu/instruction_set/table.py` lists them.\n\n| opcode | instruction | words that follow |"
+        " source |\n|---|---|---|---|\n",
         *(
             f"| {row.opcode:02X} | {row.name}: {row.meaning} | {words} | {row.source} |\n"
             for row in SUBSTANTIATED
-            for words in ("named by flags" if row.fixed is None else ", ".join(row.fixed) or "none",)
+            for words in ("by flags" if row.fixed is None else ", ".join(row.fixed) or "none",)
         ),
-        f"\nNCAR ramtek.h alone has the numbers and the names of {len(UNIMPLEMENTED)} other opcodes: ",
-        ", ".join(
-            f"{row.opcode:02X} {row.name}" for row in sorted(UNIMPLEMENTED, key=lambda row: row.opcode)
-        ),
-        ".\n\n| flag word, bit | operand | words | source |\n|---|---|---|---|\n",
+        "\n| flag word, bit | operand | words | source |\n|---|---|---|---|\n",
     ]
     for word, operands in enumerate((OPERANDS_1, OPERANDS_2), 1):
         for bit, row in enumerate(operands):
@@ -272,6 +224,15 @@ def instructions_and_operands() -> str:
     return "".join(parts)
 
 
+def listing(kind: str) -> str:
+    """The statements of a kind, a line each."""
+    found = [statement for statement in statements() if statement.kind == kind]
+    return "".join(f"{path}:{line}: {text}\n" for _, path, line, text in found)
+
+
 if __name__ == "__main__":
     sys.stdout.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
-    sys.stdout.write(document())
+    option = "".join(sys.argv[1:]).removeprefix("--").capitalize()
+    if option and option not in KINDS:
+        sys.exit(f"an option must be one of {', '.join(f'--{kind.lower()}' for kind in KINDS)}; choose one")
+    sys.stdout.write(listing(option) if option else document())

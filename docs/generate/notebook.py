@@ -1,9 +1,10 @@
 """The notebook of the paper: `python -m docs.generate.notebook > examples/the_paper.ipynb`.
 
 Its script, `examples/the_paper.py`, has a cell from each line `# %%` on, and a text from each line
-`# %% [markdown]` on. The lines above the first cell are left out. All cells are run, and their texts and
-pictures are in the notebook, so that it can be read where it cannot be run. A widget has no output, because
-it needs a running notebook.
+`# %% [markdown]` on. After `# %%` may stand metadata of the cell, such as `jupyter={"outputs_hidden": true}`.
+The lines above the first cell are left out. All cells are run, and their texts and pictures are in the
+notebook, so that it can be read where it cannot be run; of a widget it has the picture. The Python blocks of
+a text run in their turn, with a copy of the names so far, and have no output.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ import json
 import re
 import sys
 from base64 import b64encode
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 ROOT: Final = Path(__file__).resolve().parents[2]
@@ -27,10 +30,11 @@ MARKDOWN: Final = "markdown"
 
 
 class Cell(NamedTuple):
-    """A cell: "code" or "markdown", and its text without a comment sign."""
+    """A cell: "code" or "markdown", its text without a comment sign, and its metadata."""
 
     kind: str
     text: str
+    metadata: Mapping[str, Any] = MappingProxyType({})
 
 
 def cells_of(script: str) -> list[Cell]:
@@ -41,8 +45,14 @@ def cells_of(script: str) -> list[Cell]:
         if mark.strip() == f"[{MARKDOWN}]":
             cells.append(Cell(MARKDOWN, re.sub(r"^# ?", "", text, flags=re.MULTILINE).strip()))
         else:
-            cells.append(Cell(CODE, text.strip()))
+            name, _, value = mark.strip().partition("=")
+            cells.append(Cell(CODE, text.strip(), {name: json.loads(value)} if value else {}))
     return cells
+
+
+def solutions_of(text: str) -> list[str]:
+    """The Python blocks of a text."""
+    return re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
 
 
 def outputs_of(code: str, names: dict[str, Any]) -> list[dict[str, Any]]:
@@ -56,11 +66,21 @@ def outputs_of(code: str, names: dict[str, Any]) -> list[dict[str, Any]]:
         if isinstance(last, ast.Expr):
             value = eval(compile(ast.Expression(last.value), SCRIPT.name, "eval"), names)
     outputs: list[dict[str, Any]] = []
-    if text := printed.getvalue():
+    end = statements[-1] if statements else None
+    slider = getattr(names[end.name], "widget", None) if isinstance(end, ast.FunctionDef) else None
+    if slider is not None:
+        # A function with a slider shows its result. Outside of a notebook, ipywidgets prints a description.
+        value = slider.result
+    elif text := printed.getvalue():
         outputs.append({"output_type": "stream", "name": "stdout", "text": lines_of(text)})
+    picture = None
     if hasattr(value, "_repr_png_"):
-        picture = {"image/png": b64encode(value._repr_png_()).decode("ascii")}
-        outputs.append({"output_type": "display_data", "data": picture, "metadata": {}})
+        picture = b64encode(value._repr_png_()).decode("ascii")
+    elif hasattr(value, "_repr_mimebundle_"):
+        bundle = value._repr_mimebundle_()
+        picture = (bundle[0] if isinstance(bundle, tuple) else bundle).get("image/png")
+    if picture is not None:
+        outputs.append({"output_type": "display_data", "data": {"image/png": picture}, "metadata": {}})
     return outputs
 
 
@@ -71,7 +91,7 @@ def notebook_of(cells: list[Cell], outputs: list[list[dict[str, Any]]]) -> dict[
         row: dict[str, Any] = {
             "cell_type": cell.kind,
             "id": f"cell-{number}",
-            "metadata": {},
+            "metadata": dict(cell.metadata),
             "source": lines_of(cell.text),
         }
         if cell.kind == CODE:
@@ -91,7 +111,14 @@ def lines_of(text: str) -> list[str]:
 def notebook() -> dict[str, Any]:
     """The notebook of the script, after its cells were run."""
     cells, names = cells_of(SCRIPT.read_text("utf-8")), dict[str, Any](__name__="__main__")
-    return notebook_of(cells, [outputs_of(cell.text, names) for cell in cells if cell.kind == CODE])
+    outputs = []
+    for cell in cells:
+        if cell.kind == CODE:
+            outputs.append(outputs_of(cell.text, names))
+        else:
+            for solution in solutions_of(cell.text):
+                outputs_of(solution, dict(names))
+    return notebook_of(cells, outputs)
 
 
 if __name__ == "__main__":

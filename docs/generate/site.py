@@ -18,8 +18,11 @@ from typing import Final
 ROOT: Final = Path(__file__).resolve().parents[2]
 FOLDER: Final = ROOT / "build" / "docs"
 
-PAGES: Final = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
-"""The documents outside `docs`, and their places on the site."""
+PAGES: Final = {
+    "README.md": "index.md", "docs/README.md": "documents.md",
+    "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
+}  # fmt: skip
+"""The documents outside `docs` and the first page of `docs`, and their places on the site."""
 
 LANGUAGES: Final = {
     ".c": "c", ".csv": "text", ".gpl": "text", ".js": "javascript", ".py": "python", ".toml": "toml"
@@ -71,9 +74,11 @@ def target_of(document: str, link: str) -> str:
 def place_of(path: str) -> str:
     """The place of a file on the site."""
     suffix = splitext(path)[1]
+    if path in PAGES:
+        return PAGES[path]
     if path.startswith("docs/") and suffix not in LANGUAGES:
         return path.removeprefix("docs/")
-    return PAGES.get(path, f"source/{path}.md" if suffix in LANGUAGES else f"source/{path}")
+    return f"source/{path}.md" if suffix in LANGUAGES else f"source/{path}"
 
 
 def page_of(document: str, markdown: str) -> str:
@@ -107,7 +112,8 @@ def write_live_coupe() -> None:
     import autocolor
 
     scene = autocolor.demo()
-    autocolor.save_page(FOLDER / "coupe.html", scene, autocolor.render(scene, smooth=2), lights=True)
+    picture = autocolor.render(scene, smooth=2)
+    autocolor.save_page(FOLDER / "coupe.html", scene, picture, lights=True, overwrite=True)
 
 
 def main() -> None:

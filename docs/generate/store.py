@@ -1,4 +1,4 @@
-"""The reference of the table store: every table and column, as the store itself makes them.
+"""The reference of the table store: its rules, and the statements that create its tables.
 
 `python -m docs.generate.store > docs/STORE.md` writes it.
 """
@@ -6,149 +6,94 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from pathlib import Path
 
-from autocolor.files.store.schema import (
-    DEFINITIONS,
-    INDEXES,
-    ROW_TABLES,
-    RowTable,
-    SqlColumn,
-    literal,
-)
-
-ROOT = Path(__file__).resolve().parents[2]
+from autocolor.files.store.schema import DEFINITIONS, INDEXES
 
 HEAD = """# The table store
 
-A scene in one SQLite file (`.sqlite` or `.db`), whose tables any tool of SQLite 3.37 or later can ask and
-edit. `read_scene`, `write_scene` and every command take it as they take a folder. The page is written
-from the columns in `autocolor/scene` by `python -m docs.generate.store > docs/STORE.md`; what a key
-means and what an edit of it costs is in COLUMNS.md.
+A scene in one SQLite file (`.sqlite` or `.db`), for any tool of SQLite 3.37 or later. `read_scene`,
+`write_scene` and every command accept a store like a folder. `python -m docs.generate.store > docs/STORE.md`
+writes this page.
 
-    autocolor sql car.sqlite "SELECT name, intensity FROM lights"
-    autocolor sql scenes/coupe "SELECT part, count(*) AS polygons FROM polygons GROUP BY part" --csv
-    autocolor sql car.sqlite "UPDATE surfaces SET exponent = 40 WHERE name = 'body'" --write
-    autocolor sql car.sqlite
+```
+autocolor convert scenes/coupe car.sqlite
+autocolor sql car.sqlite "SELECT name, intensity FROM lights"
+autocolor sql scenes/coupe "SELECT part, count(*) AS polygons FROM polygons GROUP BY part" --csv
+autocolor sql car.sqlite "UPDATE surfaces SET exponent = 40 WHERE name = 'body'" --write
+```
 
-The last one asks at a prompt: `.tables`, `.schema lights`, `.quit`. A scene that is no store is read into
-memory for it; `--write` then saves to its folder, whose comments stay. In Python:
+Without a statement, `autocolor sql car.sqlite` opens a prompt with `.tables`, `.schema lights` and `.quit`.
+Any other scene is read into a store in memory; `--write` then saves it to its folder, with its comments. In
+Python:
 
-    with autocolor.open_tables("car.sqlite") as tables:
-        tables.select("SELECT node, x, value AS stress FROM nodes JOIN node_scalars USING (node)"
-                      " WHERE scalar = ? AND value > ?", ["stress", 200])
-        tables.update("lights", "key", intensity=2.0)
-        scene = tables.scene()
+```python
+with autocolor.open_tables("car.sqlite") as tables:
+    tables.select("SELECT node, value FROM node_scalars WHERE scalar = ? AND value > ?", ["stress", 200])
+    tables.update("lights", "key", intensity=2.0)
+    scene = tables.scene()
+```
 
-## What values are
+## Values
 
-- Rows are counted from 1: `nodes.node`, `polygons.polygon`, and `number` in the other tables, which keeps
-  their order. Node and polygon numbers may have gaps and come in any order; they are counted anew when a
-  scene is saved.
-- Surfaces, parts, lights and scalars are referred to by their names.
-- A point, a direction or an axis is three columns: `position_x`, `position_y`, `position_z`.
-- A flap of a light is `flaps_z_minimum`, `flaps_z_maximum` and `flaps_z_on`. Without a flap all three are
-  NULL. In an existing flap, a limit that is NULL is infinite.
-- A mapping or an exposure is a word, or JSON: `'linear'` or `'[[0, 0], [1, 1]]'`, `'auto'`, `'99.5 %'` or
-  `'{"object": [0, 1.3]}'`. A switch is 0 or 1. Colors are written as in scene files.
-- NULL is absent. A scalar without a row for a node or polygon, or with NULL there, has no value there. Minus
-  zero is 0.
-- `on` and `of` are words of SQL: write `"on"` and `"of"`.
+A column has the name of its key. [COLUMNS.md](COLUMNS.md) has the meaning, the range and the default of every
+key.
 
-Only `nodes` and `polygons` are required. Other missing tables are created as for any mesh, and a missing
-column has its default. Without `parts`, the parts are named by the polygons. A table `lights` without rows
-means no lights.
+- `number` orders the rows of a table, from 1. `scene`, `view`, `scalar` and `mesh` have at most one row.
+- Node and polygon numbers start at 1, in any order and with gaps. They are counted anew when a scene is
+  saved. `node4` is NULL in a triangle.
+- Surfaces, parts, lights and scalars are referred to by name.
+- A vector is three columns: `position_x`, `position_y`, `position_z`.
+- Colors are written as in scene files. A switch is 0 or 1. Lists and tables are JSON: a `mapping` is
+  `'linear'` or `'[[0, 0], [1, 1]]'`, an `exposure` is `'99.5 %'` or `'{"object": [0, 1.3]}'`.
+- NULL is absent, or the default. The columns of another reflection model are NULL, and so are the two colors
+  of a surface with a ramp. Without a flap all its columns are NULL. In a flap, a limit that is NULL is
+  infinite.
+- `mesh_scalars` names the scalars of the mesh, of a 'node' or of a 'polygon'. A node or polygon without a
+  row, or with NULL, has no value.
 
-## What is checked, and what is run
+Only `nodes` and `polygons` are required. Without `parts`, the polygons name the parts. Other missing tables
+are created, as for a mesh without a scene, and a missing column has its default. A table `lights` without
+rows means no lights.
 
-The tables check the types of values, and that names differ. Tools leave references unchecked unless they are
-asked (`PRAGMA foreign_keys = ON`). Reading a store checks all of it, every range, choice and reference:
-"polygons, row 12: node 40 is not in the node table; correct it". `--write` and `open_tables` read the changed
-scene before they save it. Nothing is repaired: polygons without area and parts without polygons stay, as they
-do in `.tables` files.
+## What is checked
 
-A store is data, and reading it runs no code from it. Views, triggers and tables of other names are
-ignored; a view, a virtual table or a computed column with one of the names below is refused. Statements may
-read, compute, and with `--write` change rows. They may not attach files, load extensions, set pragmas or
-change tables, and they end after 30 seconds (`--seconds`). A value, also one that a statement computes, has
-at most 128 KiB. A file has at most 1.1 GB, unless you allow more with `--limit`.
+STRICT tables check types, and that names differ. SQLite checks references only after `PRAGMA foreign_keys =
+ON`. Reading a store checks every range, choice and reference, and names the place: "polygons, row 12: node 40
+is not in the node table; correct it". `--write` and `open_tables` check the changed scene before they save
+it. Polygons without area and parts without polygons stay.
 
-A store is read into memory, changed there, and replaced as a whole: the new file is written under another
-name and renamed. A program of ours that is killed leaves the old store or the new one, and nothing beside
-it. While a store is changed, SQLite's own lock keeps other programs from changing it. A program of SQLite
-that has the store open from before keeps the old file. SQLite refuses its changes (`attempt to write a
-readonly database`) until it opens the store again.
+Reading a store runs no code from it. Other tables, views and triggers are ignored. A view, a virtual table or
+a computed column with a name of this page is refused. Statements may read, compute and, with `--write`,
+change rows. They may not attach files, load extensions, set pragmas or change tables, and they end after 30
+seconds (`--seconds`). A value has at most 128 KiB, and a file 1.1 GB (`--limit`).
 
-Tables, views, indexes and triggers of other programs stay, and none of them is run: the tables below are made
-anew, and then the indexes and triggers that others gave them. If one does not fit the rows of the new scene,
-the store is left as it is. `--write` refuses a store with triggers, because its statement would run them. A
-studio that shows a store, or a scene file, shows the changes of other programs as one step to undo; with
-unsaved edits it asks.
+## How a store is saved
 
-What another program has written to a `-wal` file is read with the store. Before the store is replaced,
-SQLite moves the log into it, and the store leaves WAL mode. While a program has the store open in WAL mode,
-it is read and not replaced. Do not turn WAL mode on while several programs change a store. A store in WAL
-mode cannot be read where SQLite may not write.
+- A store is changed in memory, written under another name and renamed. A kill leaves the old file or the new.
+- SQLite's lock keeps other programs from changing the store meanwhile. A program that opened it before keeps
+  the old file; SQLite refuses its changes (`attempt to write a readonly database`) until it opens the store
+  again.
+- Other tables, views, indexes and triggers stay. If one does not fit the new rows, nothing is saved.
+  `--write` refuses a store with triggers, because its statement would run them.
+- A `-wal` file is read with its store, and merged before the store is replaced. A store that another program
+  has open in WAL mode is not replaced. In a folder without write permission, a store in WAL mode cannot be
+  read.
+- A `-journal` of a killed program is rolled back. If it names another file, which SQLite would delete, the
+  store is refused: open it once with `sqlite3 FILE .tables` if you trust both files, or move the journal
+  away.
 
-If a program was killed while it changed the store, SQLite takes the change back by the `-journal` beside
-it, as any tool of SQLite does. A `-journal` can also name another file, which SQLite deletes afterwards.
-Such a store is refused, for reading and for writing. If you trust both files, open the store once with
-`sqlite3 FILE .tables`; otherwise move the journal away.
+A studio that shows a store shows the changes of other programs as one step to undo; with unsaved edits it
+asks.
 
-The indexes make it fast to rename parts, and to remove nodes and polygons with their values. They are created
-after the rows.
+## The tables
 
-## The mesh
-"""
-
-ROWS = """
-## Tables of one row
-
-`scene`, `view` and `scalar` have at most one row, `number` 1.
-"""
-
-MANY = """
-## Tables of many rows
 """
 
 
 def document() -> str:
     """The whole reference."""
-    parts = [HEAD]
-    for name in [name for name in DEFINITIONS if name not in ROW_TABLES]:
-        parts.append(f"\n```sql\n{DEFINITIONS[name]};\n```\n")
-    parts.append(f"\n```sql\n{''.join(f'{index};{chr(10)}' for index in INDEXES.values())}```\n")
-    for head, is_single in ((ROWS, True), (MANY, False)):
-        parts.append(head)
-        for table in ROW_TABLES.values():
-            if table.is_single == is_single:
-                parts.extend(lines_of(table))
-    return "".join(parts)
-
-
-def lines_of(table: RowTable) -> Iterator[str]:
-    """The reference of a table, a line a column; the three columns of a vector share one."""
-    yield f"\n### `{table.name}`\n\n| column | type | what it is | value | default |\n|---|---|---|---|---|\n"
-    for column in table.columns:
-        if column.path[-1] not in (1, 2):
-            default = "" if column.default is None else f"`{shown_default(table, column)}`"
-            told = default or ("NULL" if column.may_be_null else "")
-            rule = column.column.kind.rule().removeprefix("must be ")
-            name, text = shown_name(column), column.column.help
-            yield f"| `{name}` | {column.type} | {text} | {rule} | {told} |\n".replace("|| ", "| ")
-
-
-def shown_name(column: SqlColumn) -> str:
-    """The name of a column; of a vector, with all its axes."""
-    return f"{column.name[:-1]}x`, `..._y`, `..._z" if column.path[-1] == 0 else column.name
-
-
-def shown_default(table: RowTable, column: SqlColumn) -> str:
-    """The default of a column; of a vector, those of all its axes."""
-    if column.path[-1] != 0:
-        return literal(column.default)
-    return ", ".join(literal(each.default) for each in table.columns if each.path[:-1] == column.path[:-1])
+    statements = [*DEFINITIONS.values(), *INDEXES.values()]
+    return f"{HEAD}```sql\n{''.join(f'{statement};{chr(10)}' for statement in statements)}```\n"
 
 
 if __name__ == "__main__":

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import random
 
-from autocolor.screens.input import Chord
-from autocolor.screens.keys import BINDINGS
+from autocolor.screens.keys import BINDINGS, Chord
 from autocolor.screens.viewer import SCREENS, Viewer
 from autocolor.widgets.widget import Gap
 from ramtek_emu import Ramtek9300

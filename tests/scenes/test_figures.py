@@ -10,7 +10,7 @@ from PIL import Image
 
 import autocolor
 from autocolor.files.state import note_color, recent_colors
-from autocolor.screens.light_and_view.marks import MovablePoint
+from autocolor.screens.light_and_view.marks import LIGHT, MovablePoint
 from autocolor.screens.light_and_view.orthographic_views import SIDES
 from autocolor.testing import Recoloring, check_recoloring_moves_no_word
 from ramtek_emu import Ramtek9300
@@ -121,7 +121,7 @@ def test_the_views_of_figure_5_show_the_object_and_marks_for_all_lights_and_the_
         names = {light.name for light in viewer.studio.scene.lights}
         for side in SIDES:
             points = {each.key for each in handles if side.area.has(each.element, each.line)}
-            assert points >= {MovablePoint("light", side, name) for name in names}
+            assert points >= {MovablePoint(LIGHT, side, name) for name in names}
             assert MovablePoint("eye", side) in points
 
 

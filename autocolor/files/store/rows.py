@@ -1,9 +1,4 @@
-"""The rows of a store as a scene, and a scene as rows.
-
-Measured, for a million nodes and a million quads: `np.fromiter` of whole rows takes half as long as
-`fetchall` and `np.array`. To look at all types takes half as long as reading, so only tables of another
-definition than ours are looked at.
-"""
+"""The rows of a store as a scene, and a scene as rows."""
 
 from __future__ import annotations
 

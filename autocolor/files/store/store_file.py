@@ -83,10 +83,8 @@ def write_store(
     """Write a scene to a store, so that `read_store` gives it back.
 
     With `overwrite`, a store that exists is replaced, and the tables, views, indexes and triggers of other
-    programs stay in it. `guard` checks the file before. Raises OutputError if the file exists and `overwrite`
-    is false, or if nothing can be created there; WriteError if writing fails, if the store is damaged, or if
-    an addition of others does not fit the new tables; InputError if the file is no store, if SQLite would
-    delete another file, and for a name that is not UTF-8. Nothing is changed then.
+    programs stay in it. `guard` checks the file before. Raises OutputError or WriteError if the file cannot
+    be written, and InputError if it is no store of ours. Nothing is changed then.
     """
     path = Path(path)
     refuse_output(path, overwrite=overwrite)

@@ -9,10 +9,6 @@ away from its normal: a sphere of radius r that faces outward has 1/r.
 
 Assumed: at the rim of a fan, with neighbors on one side only, the curvature is the mean of the neighbors
 around which the surface is closed, if there are any.
-
-Measured and rejected: a fit to the normals alone. It is as good on a regular mesh, but with triangles of
-random density it was 7 % off at half of the nodes of a sphere, however many the triangles. The fit to the
-nodes is less than 1 % off.
 """
 
 from __future__ import annotations

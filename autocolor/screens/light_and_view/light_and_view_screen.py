@@ -251,10 +251,8 @@ class LightAndViewScreen(Screen):
         self.session.tell(f"the views show {shown}")
 
     def _fit_surface(self) -> None:
-        scene, name = self.session.scene, self.session.surface_name
-        numbers = [part for part in scene.mesh.parts_in_use if scene.parts[part].surface == name]
-        if numbers:
-            self._fit(scene.mesh.coordinates_of_parts(numbers), name)
+        name = self.session.surface_name
+        self._fit(edits.coordinates_of(self.session.scene, "surface", name), name)
 
     def _zoom(self, steps: float) -> None:
         self.views = self.views.zoomed(CLOSER**steps)

@@ -8,23 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, lru_cache, partial
+from functools import lru_cache, partial
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers
+from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.orbit import side_name, target_of
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import ASPECT, View
-from autocolor.screens.light_and_view.orthographic_views import (
-    AXES,
-    OrthographicViews,
-    PointMark,
-    ViewSide,
-)
+from autocolor.screens.light_and_view.orthographic_views import AXES, OrthographicViews, PointMark, ViewSide
 from autocolor.screens.screen import Handle
 from autocolor.widgets.items import (
     BLUE,
@@ -38,7 +33,6 @@ from autocolor.widgets.items import (
     Area,
     Item,
     area_of,
-    between,
     clipped,
     joined,
     rounded,
@@ -52,11 +46,11 @@ from ramtek_emu import instructions
 
 EYE: Final = "eye"
 TARGET: Final = "target"
-LIGHT: Final = "light"
+LIGHT: Final = "position"
 AIM: Final = "aim"
 DIRECTION: Final = "direction"
 FLAP: Final = "flap"
-"""The kinds of movable points."""
+"""The kinds of movable points: the columns of the view and of a light, and the ends of flaps."""
 
 DIRECTION_LENGTH: Final = 40.0
 """Assumed: the length of the arrow of a light with a direction and no aim, in elements."""
@@ -85,23 +79,17 @@ class MovablePoint(NamedTuple):
 
     def put(self, scene: Scene, point: Vector) -> Scene:
         """The scene with the movable point at `point`. An end of a flap does not pass the other end."""
-        if self.what == EYE:
-            return scene.with_view(eye=point)
+        if self.what == FLAP:
+            value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
+            value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
+            flaps: Any = {self.axis: {self.end: value}}
+            return scene.with_light(self.light, flaps=flaps)
+        start = scene.lights_in_world[self.light].position if self.light else scene.view.eye
+        step = np.subtract(point, start).tolist()
+        changes: Any = {self.what: step if self.what == DIRECTION else point}
         if self.what == TARGET and scene.view.target is None:
-            return scene.with_view(direction=_step(scene.view.eye, point))
-        if self.what == TARGET:
-            return scene.with_view(target=point)
-        if self.what == LIGHT:
-            return scene.with_light_in_world(self.light, position=point)
-        if self.what == AIM:
-            return scene.with_light_in_world(self.light, aim=point)
-        if self.what == DIRECTION:
-            start = scene.lights_in_world[self.light].position
-            return scene.with_light_in_world(self.light, direction=_step(start, point))
-        value, flap = point[AXES.index(self.axis)], getattr(scene.lights[self.light].flaps, self.axis)
-        value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
-        flaps: Any = {self.axis: {self.end: value}}
-        return scene.with_light(self.light, flaps=flaps)
+            changes = {DIRECTION: step}
+        return scene.with_light_in_world(self.light, **changes) if self.light else scene.with_view(**changes)
 
     def message(self, scene: Scene, point: Vector, views: OrthographicViews) -> str:
         """The text of the message line for the movable point at `point` of a scene."""
@@ -110,11 +98,6 @@ class MovablePoint(NamedTuple):
             return f"{self.label}: " + "  ".join(f"{axis} {views.rounded(place):g}" for axis, place in places)
         flap = getattr(scene.lights[self.light].flaps, self.axis)
         return f"{self.label} {views.rounded(getattr(flap, self.end)):g}"
-
-
-def _step(start: Vector, end: Vector) -> Vector:
-    """The direction from a point to another."""
-    return end[0] - start[0], end[1] - start[1], end[2] - start[2]
 
 
 class MarkedPoint(NamedTuple):
@@ -145,22 +128,20 @@ def points_in(
 
     `chosen` is the name of a light, or empty for the eye. A chosen light has its flaps.
     """
-    eye = MovablePoint(EYE, side), scene.view.eye, MovablePoint(TARGET, side), target_of(scene), None
-    arrows: list[tuple[MovablePoint, Vector, MovablePoint, Vector | None, Light | None]] = [eye]
-    for light in scene.lights_in_world:
-        start = MovablePoint(LIGHT, side, light.name)
-        end = start._replace(what=DIRECTION if light.aim is None else AIM)
-        arrows.append((start, light.position, end, arrow_end(views, light), light))
     points: tuple[list[MarkedPoint], list[MarkedPoint]] = [], []
-    for number, (start, point, end, end_point, owner) in enumerate(arrows):
+    for number, light in enumerate([None, *scene.lights_in_world]):
+        start, point, what = MovablePoint(EYE, side), scene.view.eye, TARGET
+        end: Vector | None = target_of(scene)
+        if light is not None:
+            start, point = MovablePoint(LIGHT, side, light.name), light.position
+            what, end = DIRECTION if light.aim is None else AIM, arrow_end(views, light)
         group = points[start.light == chosen]
-        if owner is not None and start.light == chosen:
-            group += _flaps_in(owner, views, side)
-        if end_point is not None:
-            at = views.position(side, end_point)
-            group.append(MarkedPoint(end, end_point, PointMark(at, at), None, owner, number))
-        mark = views.mark(side, point, end_point)
-        group.append(MarkedPoint(start, point, mark, end_point, owner, number))
+        if light is not None and start.light == chosen:
+            group += _flaps_in(light, views, side)
+        if end is not None:
+            at = views.position(side, end)
+            group.append(MarkedPoint(start._replace(what=what), end, PointMark(at, at), None, light, number))
+        group.append(MarkedPoint(start, point, views.mark(side, point, end), end, light, number))
     return tuple(points[False]), tuple(points[True])
 
 
@@ -168,9 +149,8 @@ def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
     """The end of a light's arrow: its aim, or a point in its direction; None without either."""
     if light.aim is not None or light.axis is None:
         return light.aim
-    x, y, z = light.position
-    length = DIRECTION_LENGTH / views.scale
-    return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
+    x, y, z = light.position + DIRECTION_LENGTH / views.scale * np.array(light.axis)
+    return float(x), float(y), float(z)
 
 
 def _flaps_in(light: Light, views: OrthographicViews, side: ViewSide) -> Iterator[MarkedPoint]:
@@ -247,13 +227,10 @@ def sign_of(what: str, mark: PointMark) -> Floats:
 
 def picture_corners(view: View, target: Vector) -> Floats:
     """The points at the corners of the picture, (4, 3), at the depth of the target, from the upper left."""
-    right, down, forward = view.axes
-    right, down = ASPECT * view.half_height(ASPECT) * right, view.half_height(ASPECT) * down
-    depth = float(forward @ (np.array(target) - np.array(view.eye)))
-    rays = np.array(
-        [forward + across for across in (-right - down, right - down, right + down, down - right)]
-    )
-    return np.array(view.eye) + depth * rays
+    places = np.array([(-ASPECT, -1), (ASPECT, -1), (ASPECT, 1), (-ASPECT, 1)])
+    rays = view.axes[2] + view.half_height(ASPECT) * places @ view.axes[:2]
+    corners: Floats = np.array(view.eye) + view.axes[2] @ np.subtract(target, view.eye) * rays
+    return corners
 
 
 # The outline of a light's cone as it is seen in one of the three views.
@@ -289,7 +266,7 @@ def cone_outline(views: OrthographicViews, side: ViewSide, light: Light, end: Ve
     if along.min() <= 0:
         return joined(rim)
     ends = rim[[(across / along).argmin(), (across / along).argmax()]]
-    return between(np.stack([at, at]), ends)
+    return np.concatenate([[at, at], ends], axis=1)
 
 
 # The numerals beside the lights and their aims in the three views, at the places where they hide least. Aims
@@ -309,15 +286,6 @@ PLACES: Final = np.array([(1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (
 """The places around a cross, to the right and down, in order of preference."""
 
 
-@cache
-def places_around(digits: int) -> Numbers:
-    """The areas for a numeral of some digits around a cross at (0, 0), (places, 4), the preferred first."""
-    size = np.array([CHARACTER * digits, CHARACTER_LINES])
-    gaps = REACH + np.where(PLACES.all(axis=1), AWAY, 2 * AWAY)[:, np.newaxis]
-    rings = [PLACES * (gaps + RING * ring + size // 2) - size // 2 for ring in range(RINGS)]
-    return np.concatenate([np.concatenate(rings), np.concatenate(rings) + size - 1], axis=1)
-
-
 @lru_cache(maxsize=64)
 def numerals(
     crosses: tuple[tuple[int, int, int], ...], area: Area, taken: tuple[Area, ...]
@@ -327,16 +295,19 @@ def numerals(
     The crosses and the `taken` areas stay free if possible.
     """
     occupied = [*taken, *(cross_area(element, line) for _, element, line in crosses)]
+    gaps = REACH + np.where(PLACES.all(axis=1), AWAY, 2 * AWAY)[:, np.newaxis]
     placed = []
-    for number, element, line in crosses:
-        places = places_around(len(str(number))) + np.array([element, line, element, line])
-        others, starts, ends = np.array(occupied), places[:, :2], places[:, 2:]
+    for number, *cross in crosses:
+        size = np.array([CHARACTER * len(str(number)), CHARACTER_LINES])
+        rings = [PLACES * (gaps + RING * ring + size // 2) - size // 2 for ring in range(RINGS)]
+        starts = np.concatenate(rings) + cross
+        others, ends = np.array(occupied), starts + size - 1
         overlaps = (starts[:, None] <= others[:, 2:]) & (ends[:, None] >= others[:, :2])
         counts = overlaps.all(axis=2).sum(axis=1)
         is_outside = (starts < area[:2]).any(axis=1) | (ends > area[2:]).any(axis=1)
         # The first of the places that overlap the fewest areas.
         best = np.where(is_outside, len(others) + 1, counts).argmin()
-        placed.append(Area(*places[best].tolist()))
+        placed.append(Area(*starts[best].tolist(), *ends[best].tolist()))
         occupied.append(placed[-1])
     return tuple(placed)
 
@@ -365,8 +336,8 @@ def marks_in(
     name = f"{side_name(scene, side.toward)}   {AXES[side.right]} >  {AXES[side.up]} ^"
     title = text(name, side.area.left + 8, side.area.bottom - CHARACTER_LINES - 3, LIGHT_GRAY)
     others, ours = points_in(scene, views, side, chosen)
-    edges = edge_items(views, side, scene.view, target_of(scene))
-    items = [title, *edges, *point_items(views, side, others, False), *point_items(views, side, ours, True)]
+    items = [title, *edge_items(views, side, scene.view, target_of(scene))]
+    items += [*point_items(views, side, others, False), *point_items(views, side, ours, True)]
     eyes = [sign_of(EYE, each.mark) for each in (*others, *ours) if each.movable.what == EYE]
     taken = [title.area, *(area_of(eye.reshape(-1, 2), limit=side.area) for eye in eyes)]
     handles = []
@@ -428,7 +399,8 @@ def point_items(
 def edge_items(views: OrthographicViews, side: ViewSide, view: View, target: Vector) -> Sequence[Item]:
     """The items of the picture's edges at the depth of the target, and of the rays to its corners."""
     corners = views.positions(side, picture_corners(view, target))
-    rays = between(np.broadcast_to(views.position(side, view.eye), (4, 2)), corners)
+    eyes = np.broadcast_to(views.position(side, view.eye), (4, 2))
+    rays = np.concatenate([eyes, corners], axis=1)
     return drawn_item([rays, joined([*corners, corners[0]])], SLATE, side)
 
 

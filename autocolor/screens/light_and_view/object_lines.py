@@ -25,11 +25,7 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.cached import Cached
-from autocolor.screens.light_and_view.orthographic_views import (
-    SIDES,
-    OrthographicViews,
-    ViewSide,
-)
+from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, ViewSide
 from autocolor.visibility.camera import rotated
 from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import focal_length, projection
@@ -52,12 +48,6 @@ class DepthPicture(NamedTuple):
     view: View
     depths: Floats
     parts: Indices
-
-    @property
-    def focal(self) -> float:
-        """The focal length in pixels: the size of a pixel is the depth over it."""
-        lines, elements = self.depths.shape
-        return focal_length(lines, elements, self.view.field_of_view)
 
 
 # Depth pictures, by the scan lines and the depth test of the renderer.
@@ -97,21 +87,6 @@ def depth_picture(mesh: Mesh, view: View, lines: int, elements: int, numbers: In
     return DepthPicture(view, depths.reshape(lines, elements), parts.reshape(lines, elements))
 
 
-def depth_picture_of_points(
-    points: VisiblePoints, lines: int, elements: int, numbers: Indices
-) -> DepthPicture:
-    """The depth picture of the visible points of a picture, at the middles of so many lines and elements.
-
-    `numbers` are as in `depth_picture`.
-    """
-    depths = np.full(points.lines * points.elements, np.inf)
-    parts = np.full(len(depths), NO_PART)
-    depths[points.pixels], parts[points.pixels] = points.depths, numbers.take(points.parts.numbers - 1)
-    shape = points.lines, points.elements
-    small = (sampled(each.reshape(shape), lines, elements) for each in (depths, parts))
-    return DepthPicture(points.view, *small)
-
-
 def sampled(table: AnyArray, lines: int, elements: int) -> AnyArray:
     """A raster of another size: each value is that at the middle of its place."""
     rows, columns = (
@@ -136,7 +111,10 @@ def outlines_and_borders(picture: DepthPicture) -> tuple[Booleans, Booleans]:
     Both are (lines, elements).
     """
     is_seen = picture.parts != NO_PART
-    depths = picture.depths * (picture.focal / picture.depths.min() if is_seen.any() else 1.0)
+    # The size of a pixel is the depth over the focal length.
+    lines, elements = is_seen.shape
+    focal = focal_length(lines, elements, picture.view.field_of_view)
+    depths = picture.depths * (focal / picture.depths.min() if is_seen.any() else 1.0)
     # The stage lies behind the object, and has no lines but its outline.
     depths = np.where(picture.parts == STAGE, 2 * depths.max(where=is_seen, initial=0.0), depths)
     outlines, borders = np.zeros((2, *depths.shape), np.bool_)
@@ -205,8 +183,9 @@ def crease_edges(mesh: Mesh, numbers: Indices) -> Indices:
 
 def crease_pixels(picture: DepthPicture, coordinates: Floats, creases: Indices) -> Booleans:
     """The pixels at which a depth picture sees creases, (lines, elements); `coordinates` are (nodes, 3)."""
-    view, depths, focal = picture.view, picture.depths, picture.focal
-    size = np.array(depths.shape[::-1])[:, None]
+    view, depths, (lines, elements) = picture.view, picture.depths, picture.depths.shape
+    size = np.array([[elements], [lines]])
+    focal = focal_length(lines, elements, view.field_of_view)
     ends = [rotated(view.axes, np.take(coordinates.T, nodes, axis=1), view.eye) for nodes in creases]
     # Leave out the creases that pass the eye.
     before_eye = (ends[0][2] > 0) & (ends[1][2] > 0)
@@ -270,8 +249,6 @@ def moved(words: Words, side: ViewSide, before: OrthographicViews, views: Orthog
 
     Pixels are left out or repeated.
     """
-    if before == views:
-        return words
     shifted = np.pad(words, (0, 1), constant_values=NIGHT)
     for direction, (count, axis, sign) in enumerate(
         zip(words.shape, (side.up, side.right), (-1, 1), strict=True)
@@ -321,9 +298,13 @@ class ObjectLines:
         The lines of a coarser picture are as coarse as the picture.
         """
         numbers, creases = self._object_of(scene)
-        lines, elements = min(points.lines, area.height), min(points.elements, area.width)
-        picture = depth_picture_of_points(points, lines, elements, numbers)
-        return sampled(line_words(picture, scene.mesh, creases), area.height, area.width)
+        raster, size = (points.lines, points.elements), (area.height, area.width)
+        depths, parts = np.full(raster, np.inf), np.full(raster, NO_PART)
+        depths.put(points.pixels, points.depths)
+        parts.put(points.pixels, numbers.take(points.parts.numbers - 1))
+        small = (sampled(each, *map(min, raster, size)) for each in (depths, parts))
+        picture = DepthPicture(points.view, *small)
+        return sampled(line_words(picture, scene.mesh, creases), *size)
 
     def _object_of(self, scene: Scene) -> tuple[Indices, Indices]:
         """The numbers of the parts, and the creases. If all parts are stage, they are the object."""

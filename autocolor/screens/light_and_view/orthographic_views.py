@@ -16,7 +16,7 @@ from autocolor.arrays import Floats, bounds_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
 from autocolor.scene.orbit import target_of
 from autocolor.scene.scene import Scene
-from autocolor.widgets.items import Area
+from autocolor.widgets.items import Area, clipped
 from autocolor.widgets.menu import WORK
 
 # The areas of the views: the quarters of the work area.
@@ -88,9 +88,8 @@ class PointMark(NamedTuple):
 
     def dragged(self, element: int, line: int) -> tuple[int, int]:
         """Where the point goes if the mark goes to a pixel: as many times as far as the point is farther."""
-        (at_element, at_line), (from_element, from_line) = self.at, self.place
-        across, down = element - from_element, line - from_line
-        return round(at_element + self.ratio * across), round(at_line + self.ratio * down)
+        across, down = element - self.place[0], line - self.place[1]
+        return round(self.at[0] + self.ratio * across), round(self.at[1] + self.ratio * down)
 
 
 Coordinate = TypeVar("Coordinate", float, Floats)
@@ -136,14 +135,9 @@ class OrthographicViews(NamedTuple):
         to = area.middle if end is None else self.position(side, end)
         if not area.has(*to):
             to = area.middle
-        step = at[0] - to[0], at[1] - to[1]
-        # On the way from `to`, the nearest edge counts.
-        share = min(
-            ((high if along > 0 else low) - start) / along
-            for start, along, low, high in zip(to, step, area[:2], area[2:], strict=True)
-            if along
-        )
-        return PointMark((to[0] + share * step[0], to[1] + share * step[1]), at, 1 / share if share else 1.0)
+        _, _, element, line = clipped(np.array([(*to, *at)]), area)[0].tolist()
+        way = math.dist(to, (element, line))
+        return PointMark((element, line), at, math.dist(to, at) / way if way else 1.0)
 
     def placed(self, side: ViewSide, point: Vector, element: int, line: int) -> Vector:
         """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.
@@ -151,11 +145,9 @@ class OrthographicViews(NamedTuple):
         The third coordinate stays exactly, and so does a coordinate already at this element or line.
         Assumed: the coordinates are rounded to decimals that place them within a tenth of a pixel.
         """
-        moved, present, middle = list(point), self.position(side, point), side.area.middle
-        for axis, pixel, now, center, sign in (
-            (side.right, element, present[0], middle[0], 1),
-            (side.up, line, present[1], middle[1], -1),
-        ):
+        moved, axes = list(point), (side.right, side.up)
+        places = zip((element, line), self.position(side, point), side.area.middle, strict=True)
+        for axis, sign, (pixel, now, center) in zip(axes, (1, -1), places, strict=True):
             if abs(now - pixel) > 0.5:
                 moved[axis] = self.rounded(self.center[axis] + sign * (pixel - center) / self.scale)
         return moved[0], moved[1], moved[2]
@@ -171,16 +163,14 @@ class OrthographicViews(NamedTuple):
         next. Paper: Figure 5, RESCALE moves closer or farther away.
         """
         finest = max(1 / LARGEST_COORDINATE, FINEST * max(map(abs, self.center)))
-        return OrthographicViews(
-            self.center, min(max(self.scale * ratio, 1 / LARGEST_COORDINATE), 1 / finest)
-        )
+        return self._replace(scale=min(max(self.scale * ratio, 1 / LARGEST_COORDINATE), 1 / finest))
 
     def panned(self, side: ViewSide, elements: float, lines: float) -> OrthographicViews:
         """The views of the same scale, moved so that every point of a view moves by elements and lines."""
         center = list(self.center)
         center[side.right] -= elements / self.scale
         center[side.up] += lines / self.scale
-        return OrthographicViews((center[0], center[1], center[2]), self.scale).zoomed(1)
+        return self._replace(center=(center[0], center[1], center[2])).zoomed(1)
 
 
 def fitted_views(points: Floats) -> OrthographicViews:

@@ -83,10 +83,9 @@ class ExplainScreen(Screen):
             self._step(down // SIDE - DOWN, across // SIDE - ACROSS)
 
     def _key(self, name: str, typed: str) -> bool:
-        if name not in STEPS:
-            return False
-        self._step(*STEPS[name])
-        return True
+        if name in STEPS:
+            self._step(*STEPS[name])
+        return name in STEPS
 
     def _step(self, down: int, across: int) -> None:
         """Explain a neighbor of the pixel, if it is in the picture."""
@@ -102,8 +101,7 @@ def items_of_row(row: TextRow, number: int) -> list[Item]:
     says = fitted(row.says, (right - left) // CHARACTER)
     is_quiet = row.label in ("", "light")
     ink = YELLOW if number == 0 else LIGHT_GRAY if is_quiet else WHITE
-    items = [text(row.label, LEFT, top, LIGHT_GRAY)] if row.label else []
-    return [*items, text(says, left, top, ink)] if says else items
+    return [text(row.label, LEFT, top, LIGHT_GRAY), text(says, left, top, ink)]
 
 
 def magnifier_items(words: Words, line: int, element: int) -> list[Item]:

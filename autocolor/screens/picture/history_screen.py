@@ -18,7 +18,7 @@ from autocolor.screens.comparing import MOST_DESCRIBED
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.screen import Content, Surroundings
 from autocolor.screens.session import HISTORY, Session
-from autocolor.screens.steps import redo, undo
+from autocolor.screens.steps import go
 from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, Area
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import MARGIN, ROW_LINES, Button, Gap, Pair, Widget
@@ -103,11 +103,10 @@ class HistoryScreen(OverPicture):
 
     def _rows(self) -> Sequence[Widget]:
         count = len(self._scenes)
-        if count <= MOST_ROWS:
-            return []
         help = f"Show older steps, or newer steps; there are {count - 1}."
-        scroll = partial(self._scroll, 1), partial(self._scroll, -1)
-        return [Pair("older", help, run=scroll[0], other="newer", run_other=scroll[1]), Gap("list gap")]
+        older, newer = partial(self._scroll, 1), partial(self._scroll, -1)
+        pair = Pair("older", help, run=older, other="newer", run_other=newer)
+        return [pair, Gap("list gap")] if count > MOST_ROWS else []
 
     def _scroll(self, pages: float) -> None:
         """Scroll by some pages to older steps; a negative number scrolls to newer steps."""
@@ -117,10 +116,8 @@ class HistoryScreen(OverPicture):
     def _go(self, steps: int) -> None:
         """Undo or redo some steps at once. The list stays where it is."""
         self._first = self._start()
-        if steps < 0:
-            undo(self.session, -steps)
-        elif steps > 0:
-            redo(self.session, steps)
+        if steps:
+            go(self.session, steps)
 
 
 @dataclass(frozen=True)

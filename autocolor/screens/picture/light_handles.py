@@ -6,14 +6,13 @@ The user drags a highlight or a rim to a pixel, and the light is placed so that 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Indices
-from autocolor.checks import Vector
 from autocolor.lighting.controls import Plane, flaps_of
 from autocolor.lighting.picking import (
     CONE,
@@ -31,12 +30,10 @@ from autocolor.scene.scene import NORMALS
 from autocolor.screens.cached import Cached
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
-from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.widgets.bars import number_text
 from autocolor.widgets.items import (
     BLACK,
     CHARACTER_LINES,
-    SCREEN,
     WHITE,
     YELLOW,
     Area,
@@ -69,10 +66,6 @@ class HandleKey(NamedTuple):
     place: tuple[int, int] | None = None
 
 
-Source = tuple[Vector, Vector | None]
-"""The source of a light's rays: its position, and the direction of a light at infinity."""
-
-
 class LightHandles:
     """The highlights of all lights, and with `has_rims` the rims of the chosen light, in `area`."""
 
@@ -80,9 +73,9 @@ class LightHandles:
         self.session = session
         self.area = area
         self._has_rims = has_rims
-        self._placed: tuple[str, Source, VisiblePoints, tuple[int, int]] | None = None
-        """A light, its source, the visible points, and the line and element where the highlight was placed.
-        It is there without a search: other pixels may be as bright."""
+        self._placed: tuple[object, tuple[int, int]] = None, (0, 0)
+        """The source of a light, and the line and element where its highlight was placed. It is there
+        without a search: other pixels may be as bright."""
         self._searched: dict[str, Cached[tuple[int, int] | None]] = {}
         """The line and element of the highlight of each light that was searched."""
         self._rims: Cached[tuple[Sequence[Handle], Sequence[Item]]] = Cached()
@@ -92,30 +85,24 @@ class LightHandles:
         """The handles of the lights that are on; none while something moves."""
         if self.session.moving:
             return ()
-        lights = self._seen_lights()
-        places = ((light.name, self._highlight(light)) for light in lights)
         # Of several handles at the same distance, the last is grabbed.
-        return [
-            *self._at_rims(lights)[0],
-            *(
-                self._handle(HandleKey(name, HIGHLIGHT), *place, f"highlight of {name}")
-                for name, place in places
-                if place is not None
-            ),
-        ]
+        handles = [*self._at_rims()[0]]
+        for light, line, element in self._highlights():
+            key = HandleKey(light.name, HIGHLIGHT)
+            handles.append(self._handle(key, line, element, f"highlight of {light.name}"))
+        return handles
 
     def preferred(self, near: Sequence[Handle], element: int, line: int) -> Sequence[Handle]:
         """Handles near a place. Of several highlights, the light that shines most at the place is first."""
-        keys = [each.key for each in near]
-        numbers = [n for n, key in enumerate(keys) if isinstance(key, HandleKey) and key.what == HIGHLIGHT]
-        if len(numbers) < 2:
+        keys = ((each, each.key) for each in near)
+        lights = {
+            each: key.light for each, key in keys if isinstance(key, HandleKey) and key.what == HIGHLIGHT
+        }
+        if len(lights) < 2:
             return near
         shares = specular_shares(self.session.studio.picture, line, element)
-        brightest = sorted(numbers, key=lambda number: -shares.get(_key_of(near[number]).light, 0.0))
-        handles = list(near)
-        for number, other in zip(numbers, brightest, strict=True):
-            handles[number] = near[other]
-        return handles
+        brightest = iter(sorted(lights, key=lambda each: -shares.get(lights[each], 0.0)))
+        return [next(brightest) if each in lights else each for each in near]
 
     def items(self) -> Sequence[Item]:
         """The marks at the handles: dotted lines along the rims, and crosses at the highlights.
@@ -125,17 +112,13 @@ class LightHandles:
         and the picture comes sooner. Measured on the coupe: five rims take 8 of 20 ms, and a highlight a
         third of a light's drag.
         """
-        lights = self._seen_lights()
-        items = [] if self.session.moving else [*self._at_rims(lights)[1]]
+        items = [] if self.session.moving else [*self._at_rims()[1]]
         numbers = {light.name: number for number, light in enumerate(self.session.scene.lights, start=1)}
-        for light in lights:
-            is_chosen = light.name == self.session.light_name
-            place = self._highlight(light) if is_chosen or not self.session.moving else None
-            if place is not None:
-                word, (line, element) = YELLOW if is_chosen else WHITE, place
-                items += highlight_items(element, line, self.area, word)
-                beside = element + 2 * ARM + 2, line - CHARACTER_LINES // 2
-                items.append(text(str(numbers[light.name]), *beside, word, BLACK))
+        for light, line, element in self._highlights():
+            word = YELLOW if light.name == self.session.light_name else WHITE
+            items += highlight_items(element, line, self.area, word)
+            beside = element + 2 * ARM + 2, line - CHARACTER_LINES // 2
+            items.append(text(str(numbers[light.name]), *beside, word, BLACK))
         return items
 
     def _handle(self, key: HandleKey, line: int, element: int, label: str) -> Handle:
@@ -160,8 +143,7 @@ class LightHandles:
         session.edit(scene)
         light = scene.lights_in_world[key.light]
         if key.what == HIGHLIGHT:
-            points = session.studio.sight.points
-            self._placed = light.name, _source_of(light), points, (line, element)
+            self._placed = self._source_of(light), (line, element)
         session.tell(message_of(light, key.what, session.world))
 
     def _seen_lights(self) -> list[Light]:
@@ -172,17 +154,25 @@ class LightHandles:
         lights = [light for light in session.scene.lights_in_world if light.on]
         return sorted(lights, key=lambda light: light.name == chosen)
 
-    def _highlight(self, light: Light) -> tuple[int, int] | None:
-        """The line and element of the highlight on the chosen surface, else on any surface, in the area."""
-        placed, points = self._placed, self.session.studio.sight.points
-        if placed is not None and placed[:2] == (light.name, _source_of(light)) and placed[2] is points:
-            place: tuple[int, int] | None = placed[3]
-        else:
-            place = None if self.session.moving else self._search(light.name)
-        return place if place is not None and self.area.has(*reversed(place)) else None
+    def _highlights(self) -> Iterator[tuple[Light, int, int]]:
+        """The lights whose highlight is in the area, each with the line and element of the highlight."""
+        for light in self._seen_lights():
+            place: tuple[int, int] | None = self._placed[1]
+            if self._placed[0] != self._source_of(light):
+                place = None if self.session.moving else self._search(light.name)
+            if place is not None and self.area.has(*reversed(place)):
+                yield light, *place
+
+    def _source_of(self, light: Light) -> object:
+        """The visible points and all of a light on which the place of its highlight depends."""
+        axis = light.axis if light.at_infinity else None
+        return self.session.studio.sight.points, light.name, light.position, axis
 
     def _search(self, light: str) -> tuple[int, int] | None:
-        """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E)."""
+        """Where the highlight of a light is: where it is seen, else the pixel with the largest cos(E).
+
+        It is on the chosen surface, else on any surface.
+        """
         studio, surface = self.session.studio, self.session.surface_name
         planes = studio.picture.light_planes.get(light)
         # Where words stand for normals, or there are no planes, the place depends on all of the scene.
@@ -198,10 +188,10 @@ class LightHandles:
 
         return self._searched.setdefault(light, Cached()).of(search, source, surface)
 
-    def _at_rims(self, lights: Sequence[Light]) -> tuple[Sequence[Handle], Sequence[Item]]:
-        """The handles and the marks at the rims of the chosen light, if it is on; `lights` has it last."""
+    def _at_rims(self) -> tuple[Sequence[Handle], Sequence[Item]]:
+        """The handles and the marks at the rims of the chosen light, if it is on."""
         sight, area, name = self.session.studio.sight, self.area, self.session.light_name
-        if not self._has_rims or not lights or lights[-1].name != name:
+        if not self._has_rims or name not in [light.name for light in self._seen_lights()]:
             return (), ()
 
         def at_rims() -> tuple[Sequence[Handle], Sequence[Item]]:
@@ -210,18 +200,12 @@ class LightHandles:
                 seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
                 items += rim_items(seen, area)
                 label = f"end of the {name_of(rim)} of {name}"
-                for line, element in _in_cells(seen).tolist():
+                _, first_in_cells = np.unique(seen // CELL, axis=0, return_index=True)
+                for line, element in seen[first_in_cells].tolist():
                     handles.append(self._handle(HandleKey(name, rim, (line, element)), line, element, label))
             return handles, items
 
         return self._rims.of(at_rims, self.session.scene.lights, name, sight.points, area)
-
-
-def _in_cells(pixels: Indices) -> Indices:
-    """One of the pixels, (n, 2) line and element, in each cell."""
-    lines, elements = (pixels // CELL).T
-    _, chosen = np.unique(lines * SCREEN.width + elements, return_index=True)
-    return pixels[chosen]
 
 
 def rim_items(pixels: Indices, area: Area) -> list[Item]:
@@ -244,15 +228,6 @@ def highlight_items(element: int, line: int, area: Area, word: int = YELLOW) -> 
     return [segments(shadow, BLACK, around), segments(strokes, word, around)]
 
 
-def _key_of(handle: Handle) -> HandleKey:
-    assert isinstance(handle.key, HandleKey)
-    return handle.key
-
-
-def _source_of(light: Light) -> Source:
-    return light.position, light.axis if light.at_infinity else None
-
-
 def name_of(rim: Rim) -> str:
     """The name of a rim's control in the message line."""
     if rim == CONE:
@@ -264,16 +239,14 @@ def message_of(light: Light, what: Literal["highlight"] | Rim, world: World) -> 
     """The message while a part of a light is placed; coordinates have the digits of their bars."""
 
     def shown(axis: str, value: float) -> str:
-        return f"{axis} {number_text(value, world.range_of(axis).step)}"
+        return number_text(value, world.range_of(axis).step)
 
     if what == CONE:
         return f"{light.name}: cone angle {light.cone_angle:.1f} degrees"
     if isinstance(what, tuple) and not isinstance(what, Plane):
         axis, end = what
-        flap = flaps_of(light)[axis]
-        limit = number_text(getattr(flap, end), world.range_of(axis).step)
-        return f"{light.name}: flap {axis}, {end} {limit}"
+        return f"{light.name}: flap {axis}, {end} {shown(axis, getattr(flaps_of(light)[axis], end))}"
     name, point = light.name, light.position
     if isinstance(what, Plane):
         name, point = next((r.name, r.point) for r in light.half_spaces if r.name == what.half_space)
-    return f"{name}: " + "  ".join(map(shown, "xyz", point))
+    return f"{name}: " + "  ".join(f"{axis} {shown(axis, at)}" for axis, at in zip("xyz", point, strict=True))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import ClassVar, Final, NamedTuple
+from typing import ClassVar, Final
 
 from autocolor.checks import Color
 from autocolor.mapping.display_image import DisplayImage
@@ -47,7 +47,13 @@ class OverPicture(Screen):
         def draw() -> tuple[Sequence[Item], Sequence[Handle]]:
             free = (MENU.left, self.corners, MENU.top) if around.has_menu else (None, self.corners)
             found = legend(image, *free)
-            return ((), ()) if found is None else ([legend_item(found)], [legend_handle(self.session, found)])
+            if found is None:
+                return (), ()
+            area = Area(*found.swatches[0][:4])
+            place = partial(self._place_legend, found)
+            # The handle is at the upper left corner of the legend, and everywhere on it.
+            handle = Handle("legend", area.left, area.top, "the legend", area, place)
+            return [Item(area, drawn_legend(found).tobytes(), is_solid=True)], [handle]
 
         items, handles = self._legend.of(draw, image, around.has_menu)
         return Content(
@@ -58,12 +64,15 @@ class OverPicture(Screen):
             handles=handles if other is None else (),
             hint=self.hint,
             sample=self.sample,
-            color_at=self._color_at,
             take_color=self._take_color,
             pick=self.pick,
             drag=self.drag,
             wheel=self.wheel,
         )
+
+    def _place_legend(self, legend: Legend, element: int, line: int) -> None:
+        place = legend.place_at(element, line)
+        self.session.edit(self.session.scene.with_scalar(legend_place=place))
 
     def other_image(self, around: Surroundings) -> DisplayImage | None:
         """The image that is shown in place of the present one; None for the present one."""
@@ -71,8 +80,8 @@ class OverPicture(Screen):
 
     def hint(self, element: int, line: int) -> str:
         """The surface, the part and the level at a place."""
-        pointed = self.pointed(element, line)
-        return self.help if pointed is None else pointed.message
+        names, value = self.pointed(element, line)
+        return f"{' - '.join(names)}, {value}" if names else self.help
 
     def pick(self, gesture: Gesture) -> None:
         """Choose a surface, explain a pixel, or end comparing."""
@@ -85,26 +94,23 @@ class OverPicture(Screen):
             session.explains, session.pixel = False, (gesture.line, gesture.element)
             session.turn_to(EXPLAIN)
             return
-        pointed = self.pointed(gesture.element, gesture.line)
-        if pointed is None:
+        names, value = self.pointed(gesture.element, gesture.line)
+        if not names:
             session.tell("the backdrop" if session.scene.backdrop_colors else "the background")
             return
-        session.choose_surface(pointed.surface)
-        session.part_name = pointed.part
-        session.tell(pointed.message)
+        session.part_name = names[0]
+        session.choose_surface(names[-1])
+        session.tell(f"{' - '.join(names)}, {value}")
 
     def sample(self, element: int, line: int) -> Sample | None:
         """The pixel of the picture at a place."""
-        pointed, studio = self.pointed(element, line), self.session.studio
-        if pointed is None:
+        studio = self.session.studio
+        name = surface_at(studio, element, line)
+        if not name or self.session.comparing.is_on:
             return None
         word = int(studio.words[line, element])
         red, green, blue = studio.entries[word].tolist()
-        return Sample(pointed.surface, (red, green, blue), word - studio.level_ranges[pointed.surface].first)
-
-    def _color_at(self, element: int, line: int) -> Color | None:
-        sample = self.sample(element, line)
-        return None if sample is None else sample.color
+        return Sample(name, (red, green, blue), word - studio.level_ranges[name].first)
 
     def _take_color(self, color: Color | str, element: int, line: int) -> None:
         name = self.session.surface_name
@@ -127,55 +133,24 @@ class OverPicture(Screen):
         """Move closer, or farther."""
         edits.move(self.session, wheel_ratio(gesture.steps))
 
-    def pointed(self, element: int, line: int) -> Pointed | None:
-        """The surface and the part at a place; None on the background, and while another state is shown."""
-        studio = self.session.studio
-        name = surface_at(studio, element, line)
-        if not name or self.session.comparing.is_on:
-            return None
+    def pointed(self, element: int, line: int) -> tuple[list[str], str]:
+        """The names of the part and the surface at a place, or the one name of both, and the value there.
+
+        There are no names on the background, and while another state is shown.
+        """
+        sample, studio = self.sample(element, line), self.session.studio
+        if sample is None:
+            return [], ""
         seen, image, scalar = studio.seen_at(line, element), studio.display_image, studio.scene.scalar
-        part = "" if seen is None else seen.part
-        (first, levels), bands = image.ranges[name], image.bands.get(name)
-        level = int(image.words[line, element]) - first
+        name, level = sample.surface, sample.level
+        names = list(dict.fromkeys([seen.part, name] if seen is not None else [name]))
+        bands = image.bands.get(name)
         if bands is None or scalar is None:
-            return Pointed(name, part, f"{image.meaning} {level} of {levels - 1}")
+            return names, f"{image.meaning} {level} of {image.ranges[name].levels - 1}"
         values, block = image.picture.scalar, image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"
-        return Pointed(name, part, f"{scalar.name} {shown}, shade {level % bands.shades + 1}")
-
-
-class Pointed(NamedTuple):
-    """The surface and the part under the pointer, and the value of the word there, as text."""
-
-    surface: str
-    part: str
-    value: str
-
-    @property
-    def names(self) -> list[str]:
-        """The names of the part and the surface, or the one name of both."""
-        return list(dict.fromkeys(filter(None, (self.part, self.surface))))
-
-    @property
-    def message(self) -> str:
-        """The text for the message line."""
-        return f"{' - '.join(self.names)}, {self.value}"
-
-
-def legend_item(legend: Legend) -> Item:
-    """The item that draws a legend."""
-    return Item(Area(*legend.swatches[0][:4]), drawn_legend(legend).tobytes(), is_solid=True)
-
-
-def legend_handle(session: Session, legend: Legend) -> Handle:
-    """The handle of a legend, at its upper left corner and everywhere on it."""
-    left, top, right, bottom, _ = legend.swatches[0]
-
-    def place(element: int, line: int) -> None:
-        session.edit(session.scene.with_scalar(legend_place=legend.place_at(element, line)))
-
-    return Handle("legend", left, top, "the legend", Area(left, top, right, bottom), place)
+        return names, f"{scalar.name} {shown}, shade {level % bands.shades + 1}"
 
 
 HELD: Final = "held"
@@ -200,16 +175,10 @@ def exposure_row(session: Session) -> Choice:
 
 def camera_rows(session: Session) -> list[Widget]:
     """The rows of the named views: to take one, to save the present view, and to remove the shown one."""
-    views = session.scene.views
-    save = "Save the present view under a new name, with the scene"
+    views, help = session.scene.views, "Save the present view under a new name, with the scene"
+    save = partial(edits.save_view, session)
     if not views:
-        return [
-            Button(
-                "save view",
-                f"{save}; the row camera comes back to it.",
-                run=partial(edits.save_view, session),
-            )
-        ]
+        return [Button("save view", f"{help}; the row camera comes back to it.", run=save)]
     return [
         Choice(
             "camera",
@@ -221,8 +190,8 @@ def camera_rows(session: Session) -> list[Widget]:
         ),
         Pair(
             "save view",
-            f"{save}; or remove the camera that is shown.",
-            run=partial(edits.save_view, session),
+            f"{help}; or remove the camera that is shown.",
+            run=save,
             other="remove",
             run_other=partial(edits.remove_view, session),
         ),

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Final
 
+from autocolor.arrays import Floats
 from autocolor.errors import UsageError
 from autocolor.mapping.intensity import is_held
 from autocolor.scene.defaults import framed
 from autocolor.scene.orbit import lowest_eye, moved, panned, seen_from, turned
-from autocolor.scene.surfaces import Part
+from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.naming import name_view
 from autocolor.screens.session import Session
@@ -25,14 +25,17 @@ CLOSER: Final = 0.9
 """The ratio of distances for each step closer."""
 
 
-def look(session: Session, view: View) -> None:
-    """Change the view."""
+def look(session: Session, view: View, is_lowered: bool = False) -> None:
+    """Change the view, and say why an eye that is to be lowered stays at its height above a stage."""
+    before, lowest = session.scene.view.eye[2], lowest_eye(session.scene)
     session.edit(session.scene.replace(view=view))
+    if is_lowered and lowest > -math.inf and math.isclose(before, view.eye[2], rel_tol=1e-9):
+        session.tell("the eye stays above the stage")
 
 
 def turn(session: Session, right: float, up: float) -> None:
     """Move the eye around the object, in degrees."""
-    _look_above_stage(session, turned(session.scene, right, up), up < 0)
+    look(session, turned(session.scene, right, up), up < 0)
 
 
 def move(session: Session, ratio: float) -> None:
@@ -42,16 +45,7 @@ def move(session: Session, ratio: float) -> None:
 
 def pan(session: Session, right: float, down: float) -> None:
     """Move the picture by elements and lines."""
-    view = panned(session.scene, right, down, *session.studio.words.shape)
-    _look_above_stage(session, view, down < 0)
-
-
-def _look_above_stage(session: Session, view: View, is_lowered: bool) -> None:
-    """Change the view, and say why an eye that is to be lowered stays at its height."""
-    before, lowest = session.scene.view.eye[2], lowest_eye(session.scene)
-    look(session, view)
-    if is_lowered and lowest > -math.inf and math.isclose(before, view.eye[2], rel_tol=1e-9):
-        session.tell("the eye stays above the stage")
+    look(session, panned(session.scene, right, down, *session.studio.words.shape), down < 0)
 
 
 def tilt(session: Session, steps: float) -> None:
@@ -120,17 +114,11 @@ def remove_view(session: Session) -> None:
     session.tell(f"{titled('camera', name)} removed; undo brings it back")
 
 
-def rescale(session: Session) -> None:
-    """Move the eye so that the object fills the picture (Paper: Figure 5, RESCALE)."""
-    look(session, framed(session.scene.view, session.scene.object_coordinates))
-
-
-def rescale_surface(session: Session) -> None:
-    """Move the eye so that the chosen surface fills the picture; the object if no surface is in use."""
-    if session.surface_name:
-        _fill(session, lambda part: part.surface == session.surface_name)
-    else:
-        rescale(session)
+def rescale(session: Session, surface: str = "") -> None:
+    """Move the eye so that the object, or a surface, fills the picture (Paper: Figure 5, RESCALE)."""
+    scene = session.scene
+    points = coordinates_of(scene, "surface", surface) if surface else scene.object_coordinates
+    look(session, framed(scene.view, points))
 
 
 def rescale_part(session: Session) -> None:
@@ -138,18 +126,22 @@ def rescale_part(session: Session) -> None:
 
     Raises UsageError if no part was clicked.
     """
-    if session.part_name not in [part.name for part in session.scene.parts]:
+    scene, name = session.scene, session.part_name
+    if name not in [part.name for part in scene.parts]:
         raise UsageError("no part was clicked yet; click a part in the picture first")
-    _fill(session, lambda part: part.name == session.part_name)
+    look(session, framed(scene.view, coordinates_of(scene, "name", name)))
 
 
-def _fill(session: Session, has: Callable[[Part], bool]) -> None:
-    """Move the eye so that some parts fill the picture."""
-    scene = session.scene
-    numbers = [number for number in scene.mesh.parts_in_use if has(scene.parts[number])]
+def coordinates_of(scene: Scene, column: str, name: str) -> Floats:
+    """The coordinates, (nodes, 3), of the parts of the object with a name in a column of their table.
+
+    Raises UsageError if there are none.
+    """
+    mesh, parts = scene.mesh, scene.parts
+    numbers = [number for number in mesh.parts_in_use if getattr(parts[number], column) == name]
     if not numbers:
         raise UsageError("the view fills with the object, not with its stage; click a part of the object")
-    look(session, framed(scene.view, scene.mesh.coordinates_of_parts(numbers)))
+    return mesh.coordinates_of_parts(numbers)
 
 
 # The edits of lights, exposure and paint by keys.
@@ -197,7 +189,6 @@ def switch_exposure(session: Session) -> None:
 
 def next_surface(session: Session, step: int) -> None:
     """Choose another surface in use, `step` positions further."""
-    count = max(1, len(session.studio.level_ranges))
-    session.surface = (session.surface + step) % count
+    session.surface = (session.surface + step) % max(1, len(session.studio.level_ranges))
     name = session.surface_name
     session.tell(titled("surface", name) if name else "the scene has no surface")

@@ -64,21 +64,31 @@ class PictureScreen(OverPicture):
         )
 
     def hint(self, element: int, line: int) -> str:
-        pointed = self.pointed(element, line)
-        if pointed is None:
-            return self.help
+        names, _ = self.pointed(element, line)
         does = "click explains" if self.session.explains else "drag turns, click chooses, Shift explains"
-        return f"{', '.join(pointed.names)}: {does}"
+        return f"{', '.join(names)}: {does}" if names else self.help
 
     def _rows(self) -> Sequence[Widget]:
-        session = self.session
+        session, light, up = self.session, self.session.light_name, seeming_up(self.session)
+        on_its_side = Button(
+            "on its side? turn",
+            f"The mesh seems to lie on its side: read it again with {up} up, or do nothing.",
+            run=partial(stand_up, session),
+        )
+        alone = Pair(
+            "alone",
+            f"Switch on {titled('light', light)} alone, and again: the lights as before; or all lights.",
+            run=partial(light_alone, session, light),
+            other="all on",
+            run_other=partial(all_lights_on, session),
+        )
         return [
-            *self._up_rows(),
+            *([on_its_side] if up else []),
             surface_row(session, "The surface that you edit; a click in the picture chooses, too."),
             *self._stage_rows(),
             Section("light switches"),
-            *light_switches(session, session.light_name, self._choose_light),
-            *self._alone_rows(),
+            *light_switches(session, light, self._choose_light),
+            *([alone] if light else []),
             Section("turn & move"),
             Choice(
                 "view",
@@ -108,7 +118,7 @@ class PictureScreen(OverPicture):
                 "Fill the picture with the object, or with the chosen surface.",
                 run=partial(edits.rescale, session),
                 other="surface",
-                run_other=partial(edits.rescale_surface, session),
+                run_other=partial(edits.rescale, session, session.surface_name),
             ),
             Pair(
                 "as opened",
@@ -141,7 +151,6 @@ class PictureScreen(OverPicture):
         ]
 
     def _explain(self) -> None:
-        """Let the next click in the picture explain its pixel."""
         self.session.explains = True
         self.session.tell("click the pixel to explain", persistent=True)
 
@@ -151,12 +160,6 @@ class PictureScreen(OverPicture):
 
     def leave(self) -> None:
         self.session.explains = self._has_marks = False
-
-    def _up_rows(self) -> list[Widget]:
-        """The row of a mesh that seems to lie on its side."""
-        session, up = self.session, seeming_up(self.session)
-        help = f"The mesh seems to lie on its side: read it again with {up} up, or do nothing."
-        return [Button("on its side? turn", help, run=partial(stand_up, session))] if up else []
 
     def _stage_rows(self) -> list[Widget]:
         """The row of the stage of the object, and where there is a backdrop, the rows of its two colors."""
@@ -174,22 +177,6 @@ class PictureScreen(OverPicture):
                 Entry("  bottom", help, value=in_digits(low), take=lambda low: put({"backdrop": [top, low]})),
             ]
         return rows
-
-    def _alone_rows(self) -> list[Widget]:
-        """The row that switches on the chosen light alone."""
-        session, chosen = self.session, self.session.light_name
-        if not chosen:
-            return []
-        help = f"Switch on {titled('light', chosen)} alone, and again: the lights as before; or all lights."
-        return [
-            Pair(
-                "alone",
-                help,
-                run=partial(light_alone, session, chosen),
-                other="all on",
-                run_other=partial(all_lights_on, session),
-            )
-        ]
 
     def _choose_light(self, name: str) -> None:
         self.session.choose_light(name)

@@ -8,7 +8,6 @@ screen borrows the words of all surfaces: when it is left, the sheet restores ev
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -67,20 +66,19 @@ class SplitScreen(OverPicture):
         self.session.tell(f"{difference}; {colors}; drag moves the line")
 
     def build(self, around: Surroundings) -> Content:
-        halves, line = self.halves, self._line
-        gestures = Content(pick=self.pick, drag=lambda start, last, now: self.pick(now))
-        if self.session.comparing.is_on:
-            # While the whole other state is shown, it looks as every screen over the picture.
-            whole = super().build(around)
-            return replace(gestures, base=whole.base, items=whole.items, loads=whole.loads)
-        return replace(
-            gestures,
-            base=self._base.of(
-                lambda: read_only(np.hstack([halves.left[:, :line], halves.right[:, line:]])), halves, line
-            ),
-            items=self._items_at_line(),
-            loads=[(FIRST, halves.colors)],
+        # While the whole other state is shown, it looks as every screen over the picture.
+        shown = super().build(around) if self.session.comparing.is_on else self._split()
+        return Content(
+            shown.base, shown.items, shown.loads, pick=self.pick, drag=lambda start, last, now: self.pick(now)
         )
+
+    def _split(self) -> Content:
+        halves, line = self.halves, self._line
+
+        def draw() -> Words:
+            return read_only(np.hstack([halves.left[:, :line], halves.right[:, line:]]))
+
+        return Content(self._base.of(draw, halves, line), self._items_at_line(), [(FIRST, halves.colors)])
 
     def _items_at_line(self) -> Sequence[Item]:
         """The line, and the names of the states beside it."""

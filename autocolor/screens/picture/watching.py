@@ -9,6 +9,8 @@ import time
 from collections.abc import Iterator
 from typing import Final
 
+import numpy as np
+
 from autocolor.arrays import Words
 from autocolor.mapping.ranges import BACKGROUND
 from autocolor.studio import Studio
@@ -36,15 +38,15 @@ class Watching:
     def __init__(self, display: HostPort) -> None:
         self._display = display
         self._lines: Iterator[tuple[int, Words]] = iter(())
-        self._words: Words | None = None
-        """The words of the whole picture; None when no picture comes in."""
+        self._words = np.empty((0, 0), np.uint16)
+        """The words of the whole picture."""
         self._done = 0
         self._begun = 0.0
 
     @property
     def is_on(self) -> bool:
         """Whether a picture is coming in."""
-        return self._words is not None
+        return self._done < len(self._words)
 
     def begin(self, studio: Studio) -> None:
         """Blank the picture of a studio to its background; `advance` lets it come in."""
@@ -55,22 +57,17 @@ class Watching:
 
     def advance(self) -> None:
         """Send the lines that are due by now, as many as a tick has time for; if any is due, at least one."""
-        if self._words is None:
-            return
         tick = time.monotonic()
         due = (tick - self._begun) / PICTURE_SECONDS * len(self._words)
-        while self._done < due and time.monotonic() - tick <= TICK_SECONDS:
+        while self.is_on and self._done < due and time.monotonic() - tick <= TICK_SECONDS:
             line, words = next(self._lines)
             self._display.send(instructions.write_image(words, top=line))
             self._done = line + 1
-            if self._done == len(self._words):
-                self._words = None
-                return
 
     def end(self) -> bool:
         """Show the rest of the picture at once; returns False if none was coming in."""
-        if self._words is None:
-            return False
-        rest, self._words = self._words[self._done :], None
-        self._display.send(instructions.write_image(rest, top=self._done))
-        return True
+        was_on, rest = self.is_on, self._words[self._done :]
+        if was_on:
+            self._display.send(instructions.write_image(rest, top=self._done))
+        self._done = len(self._words)
+        return was_on

@@ -39,10 +39,6 @@ class BlendingScreen(OverPicture):
     help = "Pick a level on the bar: the light color blends in above it"
     has_menu = False
 
-    def enter(self) -> None:
-        if not self.session.has_news:
-            self.session.tell(f"{self.help}; the right edge: the menu")
-
     def build(self, around: Surroundings) -> Content:
         content = replace(super().build(around), rows=self._rows, escape=self._escape)
         surface = self.session.chosen_surface

@@ -111,21 +111,18 @@ def crop_of(is_shown: Booleans, room: Area) -> Crop:
     """
     if not is_shown.any():
         is_shown = np.ones_like(is_shown)
-    places = [np.flatnonzero(is_shown.any(axis=axis)) for axis in (1, 0)]
-    sizes = room.height, room.width
-    scale = max(1.0, *((each[-1] + 1 - each[0]) / size for each, size in zip(places, sizes, strict=True)))
-    down, across = (
-        _along((each[0] + each[-1] + 1) / 2, scale, size, length)
-        for each, size, length in zip(places, sizes, is_shown.shape, strict=True)
-    )
-    left = room.left + (room.width - len(across)) // 2
-    top = room.top + (room.height - len(down)) // 2
-    return Crop(Area(left, top, left + len(across) - 1, top + len(down) - 1), down, across)
+    down, across = (np.flatnonzero(is_shown.any(axis=axis)) for axis in (1, 0))
+    scale = max(1.0, (down[-1] + 1 - down[0]) / room.height, (across[-1] + 1 - across[0]) / room.width)
+    lines = _around(down, scale, room.height, is_shown.shape[0])
+    elements = _around(across, scale, room.width, is_shown.shape[1])
+    left = room.left + (room.width - len(elements)) // 2
+    top = room.top + (room.height - len(lines)) // 2
+    return Crop(Area(left, top, left + len(elements) - 1, top + len(lines) - 1), lines, elements)
 
 
-def _along(middle: float, scale: float, room: int, length: int) -> Numbers:
-    """The places of a picture of some length that fill a room, with `middle` in its middle if possible."""
+def _around(shown: Numbers, scale: float, room: int, length: int) -> Numbers:
+    """The places of a picture of some length that fill a room, with `shown` in the middle if possible."""
     count = min(room, math.floor(length / scale + 1e-9))
-    start = min(max(middle - count * scale / 2, 0.0), length - count * scale)
+    start = min(max((shown[0] + shown[-1] + 1 - count * scale) / 2, 0.0), length - count * scale)
     places: Numbers = (start + (np.arange(count) + 0.5) * scale).astype(np.int64)
     return places

@@ -16,11 +16,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from itertools import count
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Words
+from autocolor.arrays import Words
 from autocolor.checks import Color
 from autocolor.errors import InputError, UsageError
 from autocolor.mapping.colors import (
@@ -50,6 +51,7 @@ from autocolor.screens.surface.painting import (
     PaintColor,
     change_paint,
     color_of,
+    colors_of,
     edit_paint,
     paint_rows,
     take_paint,
@@ -89,25 +91,12 @@ PICTURE: Final = Area(LEFT, FINISHES_ROW.bottom + 3, RIGHT_END, WORK.bottom)
 """The room for the picture of the surface."""
 
 
-def section_area(is_upper: bool) -> Area:
-    """The area of a section: its heading, the shades and the bars."""
-    return Area(LEFT, TOPS[is_upper], RIGHT_END, TOPS[is_upper] + SECTION_LINES - 1)
-
-
 HEX_LEFT: Final = LEFT_END + 1 - CHARACTER * len("#rrggbb") - 2 * MARGIN
 """The first element of the number of a color, at the end of its heading."""
-
-FEW: Final = "a ramp has at least 2 colors; to have none, switch the ramp off"
-MANY: Final = f"a ramp has at most {MOST_RAMP_COLORS:,} colors; remove a color first"
-"""Why a color of a ramp can be neither removed nor added."""
 
 PAINT: Final = "paint"
 COLOR: Final = "color"
 """The things that can be taken from the picture."""
-
-AS_IT_IS: Final = np.arange(WORDS, dtype=np.uint16)
-"""The words that stand for the words of a picture that is shown in its own colors."""
-
 
 BARS: Final = (
     ("red", FULL, "", RED),
@@ -165,7 +154,7 @@ class MixingScreen(Screen):
         self._taking = ""
         """The thing that the user picks in the whole picture: PAINT, COLOR, or nothing."""
         self._image: Cached[DisplayImage] = Cached()
-        self._stand_ins: Words = AS_IT_IS
+        self._stand_ins: Words = np.empty(0, np.uint16)
         """The words that stand for the words of the picture; the same array until they change."""
         self._picture: Cached[tuple[Crop, Item]] = Cached()
 
@@ -175,8 +164,6 @@ class MixingScreen(Screen):
     def leave(self) -> None:
         self._taking = ""
         self.choices.note_mixed()
-
-    # The chosen surface and its colors.
 
     @property
     def _surface(self) -> str:
@@ -202,10 +189,10 @@ class MixingScreen(Screen):
 
     def _section_at(self, element: int, line: int) -> bool | None:
         """Whether a place is in the upper section; None beside both."""
-        sections = () if self._taking else (False, True)
-        return next((each for each in sections if section_area(each).has(element, line)), None)
-
-    # Widgets and items.
+        if self._taking or not LEFT <= element <= RIGHT_END:
+            return None
+        sections = zip((False, True), TOPS, strict=True)
+        return next((is_upper for is_upper, top in sections if top <= line < top + SECTION_LINES), None)
 
     def build(self, around: Surroundings) -> Content:
         studio = self.session.studio
@@ -215,14 +202,17 @@ class MixingScreen(Screen):
         words = mixing_words(tuple(studio.level_ranges.items()), self._surface, len(self.choices.colors))
         finish = around.lit if around.lit in FINISHES and not self._taking else ""
         shown = self._image.of(lambda: self._image_with(finish), studio.display_image, finish)
-        stand_ins = AS_IT_IS if self._taking else words.dimmed(shown.entries)
+        # A picture to take from is shown as it is.
+        stand_ins = np.arange(WORDS, dtype=np.uint16) if self._taking else words.dimmed(shown.entries)
         if not np.array_equal(stand_ins, self._stand_ins):
             self._stand_ins = stand_ins
         draw = partial(self._draw, shown.words)
         crop, picture = self._picture.of(draw, shown.words, self._stand_ins, self._surface)
+        light, object_color = (self._in_section(is_upper).color for is_upper in (True, False))
+        table = words.table(shown.entries, light, object_color, self.choices.colors)
         return Content(
             items=[*(() if self._taking else self._items(words)), picture],
-            loads=() if self._taking else [(0, self._table(words, shown.entries))],
+            loads=() if self._taking else [(0, table)],
             widgets=() if self._taking else self._widgets(words),
             rows=partial(self._rows, words),
             hint=partial(self._hint, crop),
@@ -232,11 +222,6 @@ class MixingScreen(Screen):
             pick=partial(self._pick, crop),
             escape=self._end_taking,
         )
-
-    def _table(self, words: MixingWords, entries: Bytes) -> Bytes:
-        """The lookup table with the colors beside the picture."""
-        light, object_color = (self._in_section(is_upper).color for is_upper in (True, False))
-        return words.table(entries, light, object_color, self.choices.colors)
 
     def _image_with(self, finish: str) -> DisplayImage:
         """The image on the display; with a finish, as the chosen surface would look with it."""
@@ -279,29 +264,31 @@ class MixingScreen(Screen):
     def _ramp_rows(self, ramp: tuple[Color, ...]) -> list[Widget]:
         lower, chosen = self._in_section(False).number, self._chosen.number
         between = mixed(ramp[lower], ramp[lower + 1], 0.5)
+        many = f"a ramp has at most {MOST_RAMP_COLORS:,} colors; remove a color first"
         return [
             Button(
                 "add color",
                 f"Add a color to the ramp, between the colors {lower + 1} and {lower + 2}.",
-                MANY if len(ramp) == MOST_RAMP_COLORS else "",
+                many if len(ramp) == MOST_RAMP_COLORS else "",
                 run=lambda: self._give_ramp((*ramp[: lower + 1], between, *ramp[lower + 1 :]), lower + 1),
             ),
             Button(
                 "remove color",
                 f"Remove color {chosen + 1}, the chosen one, from the ramp.",
-                FEW if len(ramp) == 2 else "",
+                "a ramp has at least 2 colors; to have none, switch the ramp off" if len(ramp) == 2 else "",
                 run=lambda: self._give_ramp(ramp[:chosen] + ramp[chosen + 1 :], min(chosen, len(ramp) - 2)),
             ),
         ]
 
     def _taking_row(self, thing: str) -> Button:
-        is_on = self._taking == thing
-        return Button(
-            f"take {thing}",
-            "Stop picking." if is_on else f"{self._prompt(thing)}.",
-            run=self._end_taking if is_on else partial(self._begin_taking, thing),
-            is_chosen=is_on,
-        )
+        is_on, prompt = self._taking == thing, self._prompt(thing)
+
+        def flip() -> None:
+            self._taking = "" if is_on else thing
+            if self._taking:
+                self.session.tell(prompt)
+
+        return Button(f"take {thing}", "Stop picking." if is_on else f"{prompt}.", run=flip, is_chosen=is_on)
 
     def _widgets(self, words: MixingWords) -> Sequence[Widget]:
         paint, levels = self._paint, self._levels
@@ -327,7 +314,17 @@ class MixingScreen(Screen):
                 most=levels - 1,
                 put=lambda level: change_paint(self.session, blend=blend_from(level, levels)),
             )
-        return [*self._section(True, words), bar, *self._section(False, words), *self._finishes()]
+        width = FINISHES_ROW.width // len(FINISHES)
+        finishes = [
+            Button(
+                name,
+                f"A click gives the surface this finish: {name}, in its object color.",
+                area=FINISHES_ROW._replace(left=left, right=left + width - 1),
+                run=partial(self._finish, name),
+            )
+            for name, left in zip(FINISHES, count(LEFT, width))
+        ]
+        return [*self._section(True, words), bar, *self._section(False, words), *finishes]
 
     def _section(self, is_upper: bool, words: MixingWords) -> list[Widget]:
         """The heading of a section with the number of its color, and its bars."""
@@ -370,20 +367,6 @@ class MixingScreen(Screen):
             ),
         ]
 
-    def _finishes(self) -> list[Widget]:
-        """The finishes, side by side in a row."""
-        width = FINISHES_ROW.width // len(FINISHES)
-        area = FINISHES_ROW._replace(right=LEFT + width - 1)
-        return [
-            Button(
-                name,
-                f"A click gives the surface this finish: {name}, in its object color.",
-                area=area._replace(left=area.left + number * width, right=area.right + number * width),
-                run=partial(self._finish, name),
-            )
-            for number, name in enumerate(FINISHES)
-        ]
-
     def _items(self, words: MixingWords) -> Sequence[Item]:
         """The shades of the two colors, from the darkest at the left, and the heading of the bar between."""
         shades = zip(TOPS, (words.object_shades, words.light_shades), strict=True)
@@ -407,19 +390,19 @@ class MixingScreen(Screen):
     def _hint(self, crop: Crop, element: int, line: int) -> str:
         sample = self._sample(crop, element, line)
         name = "" if sample is None else sample.surface
-        is_own = name == self._surface
         if sample is not None and self._taking == COLOR:
             where = name or "the background"
             return f"pick {in_digits(sample.color)} of {where} as {self._chosen.name}; Esc ends"
-        if self._taking and (is_own or not name):
+        if self._taking and name in ("", self._surface):
             return self._prompt(self._taking)
         if self._taking:
             paint = self.session.scene.surfaces[name].paint
-            colors = f"{in_digits(paint.object_color)} and {in_digits(paint.light_color)}"
-            blend = f"{colors}, blend {paint.blend:.2f}"
-            ramp = "" if paint.ramp is None else f"a ramp of {len(paint.ramp)} colors"
-            return f"pick the paint of {name}: {ramp or blend}; Esc ends"
-        if sample is not None and is_own:
+            colors = " and ".join(in_digits(color) for color in colors_of(paint))
+            looks = f"{colors}, blend {paint.blend:.2f}"
+            if paint.ramp is not None:
+                looks = f"a ramp of {len(paint.ramp)} colors"
+            return f"pick the paint of {name}: {looks}; Esc ends"
+        if sample is not None and name == self._surface:
             meaning = self.session.studio.display_image.meaning
             return f"{name}, {meaning} {sample.level} of {self._levels - 1}"
         return f"{name}: click to mix its colors; P: take its paint" if name else self.help
@@ -438,8 +421,6 @@ class MixingScreen(Screen):
         name = surface_of(studio, word)
         red, green, blue = studio.entries[word].tolist()
         return Sample(name, (red, green, blue), word - studio.level_ranges[name].first if name else 0)
-
-    # Actions.
 
     def _pick(self, crop: Crop, gesture: Gesture) -> None:
         element, line = gesture.element, gesture.line
@@ -461,10 +442,6 @@ class MixingScreen(Screen):
         else:
             self._take(sample.color)
         self._taking = ""
-
-    def _begin_taking(self, thing: str) -> None:
-        self._taking = thing
-        self.session.tell(self._prompt(thing))
 
     def _end_taking(self) -> bool:
         was_taking, self._taking = bool(self._taking), ""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import ClassVar, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -47,18 +47,6 @@ class ColorPage(NamedTuple):
     """Whether its cells are of the usual size, 1, or of twice that size, 2."""
 
 
-def page_of_paints(paints: Palette | None, file: str, number: int) -> ColorPage:
-    """A page of the paints of a file, counted from 0; after the last page of paints, the swatches."""
-    count, first = 0 if paints is None else len(paints), number * PAGE
-    if paints is None or first >= count:
-        hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
-        return ColorPage("the swatches", hues_down, ("",) * PAGE)
-    end = min(first + PAGE, count)
-    title = f"paints {first + 1:,} to {end:,} of {file}" if count > PAGE else f"the paints of {file}"
-    colors = np.array(paints.colors[first:end], np.uint8)
-    return ColorPage(title, colors, paints.names[first:end], 2 if count <= FEW_PAINTS else 1)
-
-
 class PaintChoices:
     """The colors to choose from. `take` is called with a color, and its name, which may be empty."""
 
@@ -81,8 +69,16 @@ class PaintChoices:
 
     @property
     def page(self) -> ColorPage:
-        """The page that is shown."""
-        return page_of_paints(self.session.paints, self.session.paints_name, self.page_number)
+        """The page that is shown; after the last page of paints, the swatches."""
+        paints, file = self.session.paints, self.session.paints_name
+        count, first = 0 if paints is None else len(paints), self.page_number * PAGE
+        if paints is None or first >= count:
+            hues_down = swatches().reshape(ROWS, COLUMNS, 3).swapaxes(0, 1).reshape(-1, 3)
+            return ColorPage("the swatches", hues_down, ("",) * PAGE)
+        end = min(first + PAGE, count)
+        title = f"paints {first + 1:,} to {end:,} of {file}" if count > PAGE else f"the paints of {file}"
+        colors = np.array(paints.colors[first:end], np.uint8)
+        return ColorPage(title, colors, paints.names[first:end], 2 if count <= FEW_PAINTS else 1)
 
     @property
     def colors(self) -> Bytes:
@@ -112,10 +108,11 @@ class PaintChoices:
             pages,
             self._turn,
         )
-        field = PaintField(
+        field = SwatchField(
             "paints",
             f"Paints for {chosen.name}: click one, or drag over them.",
             words=words[:count],
+            row_lines=COLUMNS * CELL_LINES,
             across=ROWS // page.size,
             width=page.size * CELL_ELEMENTS,
             height=page.size * CELL_LINES,
@@ -179,11 +176,11 @@ class SwatchField(Widget):
     """Called with 1 or -1, to take the next cell or the one before, by a key or the wheel."""
     hint_of: Callable[[int], str] = lambda _: ""
     """Gives the text of the message line for a cell."""
-    row_lines: ClassVar[int] = CELL_LINES
+    row_lines: int = CELL_LINES
 
     def hint_at(self, place: Place) -> str:
         number = self.cell_at(place)
-        return self.hint if number is None else self.hint_of(number)
+        return super().hint_at(place) if number is None else self.hint_of(number)
 
     @property
     def _left(self) -> int:
@@ -209,13 +206,6 @@ class SwatchField(Widget):
 
     def nudge(self, steps: float) -> object:
         return self.step(1 if steps > 0 else -1)
-
-
-@dataclass(frozen=True)
-class PaintField(SwatchField):
-    """A page of colors as a row of the menu."""
-
-    row_lines: ClassVar[int] = COLUMNS * CELL_LINES
 
 
 @lru_cache(maxsize=8)

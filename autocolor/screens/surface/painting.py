@@ -35,7 +35,6 @@ class PaintColor(NamedTuple):
 
     @property
     def color(self) -> Color:
-        """The color itself."""
         return colors_of(self.paint)[self.number]
 
     @property
@@ -172,23 +171,6 @@ def _flip_ramp(session: Session, paint: Paint) -> None:
     change_paint(session, ramp=entries[levels].tolist())
 
 
-# The object colors that a key steps through: the default colors of new surfaces, and a surface's own color.
-
-
-def color_after(present: str, own: str, step: int, colors: Sequence[str] = OBJECT_COLORS) -> str:
-    """The color that is `step` positions further than the present one, among different `colors`.
-
-    The surface's own color comes first if the colors do not contain it. If they do not contain the present
-    color, the first color follows.
-
-    >>> color_after("#ff0000", "#ff0000", 1), color_after("#f4a39b", "#ff0000", -1)
-    ('#f4a39b', '#ff0000')
-    """
-    colors = colors if own in colors else (own, *colors)
-    place = colors.index(present) + step if present in colors else 0
-    return colors[place % len(colors)]
-
-
 def blend(session: Session, step: float) -> None:
     """Change the blend of the chosen surface."""
     if session.chosen_surface is not None:
@@ -199,7 +181,8 @@ def blend(session: Session, step: float) -> None:
 def repaint(session: Session, step: int) -> None:
     """Give the chosen surface another object color, `step` positions further.
 
-    The colors are its own and the paints that the user brought, or OBJECT_COLORS.
+    The colors are its own and the paints that the user brought, or OBJECT_COLORS. The surface's own color
+    comes first if the others do not contain it. The first color follows a color that is none of them.
     """
     if session.chosen_surface is None:
         return
@@ -208,6 +191,8 @@ def repaint(session: Session, step: int) -> None:
     if (paints := session.paints) is not None:
         names = dict(zip(map(in_digits, paints.colors), paints.names, strict=True))
     own = session.own_colors.setdefault(session.surface_name, present)
-    color = color_after(present, own, step, tuple(names))
+    colors = [*names] if own in names else [own, *names]
+    place = colors.index(present) + step if present in colors else 0
+    color = colors[place % len(colors)]
     message = f"object color {', '.join(part for part in (names.get(color), color) if part)}"
     change_paint(session, lambda _: message, object_color=color)

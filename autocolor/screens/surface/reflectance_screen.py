@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from autocolor.screens.picture.over_picture import OverPicture, surface_row
@@ -29,11 +28,12 @@ class ReflectanceScreen(OverPicture):
         surface = session.chosen_surface
         if surface is None:
             return []
+
+        def put(changes: Mapping[str, Any]) -> None:
+            session.edit(session.scene.with_surface(surface.name, **changes))
+
         return [
             surface_row(session, "The surface whose properties are shown."),
             Gap("properties gap"),
-            *rows_of(surface, partial(self._put, surface.name), session.world, leave_out=("name", "paint")),
+            *rows_of(surface, put, session.world, leave_out=("name", "paint")),
         ]
-
-    def _put(self, name: str, changes: Mapping[str, Any]) -> None:
-        self.session.edit(self.session.scene.with_surface(name, **changes))

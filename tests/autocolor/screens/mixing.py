@@ -28,12 +28,6 @@ def mixing(scene: Scene, folder: Path) -> PaintingHand:
     return hand
 
 
-def line_of(hand: PaintingHand, bar: str) -> int:
-    """The line in the middle of a bar."""
-    area = hand.widget(bar).area
-    return (area.top + area.bottom) // 2
-
-
 def shades_are_right(hand: PaintingHand) -> bool:
     """Whether shade k of the 64 of each color is k / 63 of its color, rounded half up."""
     steps = np.floor(np.arange(165) * 63 / 164 + 0.5)

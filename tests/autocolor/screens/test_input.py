@@ -5,19 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from autocolor.screens.input import (
-    LEFT,
-    MARK,
-    MIDDLE,
-    POINTER,
-    SLOP,
-    Binding,
-    Chord,
-    Gesture,
-    Mouse,
-    Unit,
-    turn_between,
-)
+from autocolor.screens.input import LEFT, MARK, MIDDLE, POINTER, SLOP, Gesture, Mouse, Unit, turn_between
 from ramtek_emu import Ramtek9300
 
 
@@ -68,24 +56,6 @@ def test_a_button_that_is_forgotten_drags_no_more() -> None:
 @pytest.mark.parametrize(("action", "steps"), [("wheel up", 3.0), ("wheel down", -3.0)])
 def test_a_wheel_turns_by_its_steps(action: str, steps: float) -> None:
     assert Mouse().gestures(action, Gesture("hover", 10, 10, steps=3.0))[0].steps == steps
-
-
-@pytest.mark.parametrize(
-    ("key", "text"),
-    [
-        (Chord("f1"), "F1"),
-        (Chord("escape"), "Esc"),
-        (Chord("tab"), "Tab"),
-        (Chord("left"), "Left"),
-        (Chord("c", shift=True), "Shift+C"),
-        (Chord("z", control=True, shift=True), "Ctrl+Shift+Z"),
-        (Chord("["), "["),
-        (Binding[object]((Chord("up"), Chord("down")), "look", lambda *_: None), "Up, Down"),
-        (Binding[object]((Chord("up"),), "look", lambda *_: None, label="arrows"), "arrows"),
-    ],
-)
-def test_a_key_is_written_as_on_a_keyboard(key: object, text: str) -> None:
-    assert str(key) == text
 
 
 # The joystick unit in process, and behind a TCP port.

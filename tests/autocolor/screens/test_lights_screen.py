@@ -12,11 +12,13 @@ from autocolor.scene.arrangements import ARRANGEMENTS, arranged
 from autocolor.scene.changes import LightChanges
 from autocolor.scene.columns import keys_of
 from autocolor.scene.following import detached
+from autocolor.screens.light_parameters import AIM, DIRECTION, POINT
 from autocolor.screens.lights_screen import LIGHTS_A_PAGE, places_of
 from autocolor.widgets.items import SCREEN, YELLOW
 from autocolor.widgets.menu import WORK
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
+from tests.closeness import all_close
 from tests.small import KEY, boxes
 
 BOX = 0.95
@@ -43,11 +45,9 @@ def cut_hand(tmp_path: Path) -> Hand:
 
 CLICKS: dict[str, tuple[list[tuple[str, float]], LightChanges]] = {
     "off": ([("on", BOX)], {"on": False}),
-    "no cone": ([("cone angle", BOX)], {"cone_angle": None}),
     "a new cone": ([("cone angle", BOX), ("cone angle", BOX)], {"cone_angle": 30.0}),
     "a flap off": ([("flaps x", BOX)], {"flaps": {"x": {"on": False}}}),
     "a new flap": ([("flaps", 0.9)], {"flaps": {"y": Flap()}}),
-    "a surface": ([("only surfaces", BOX), ("  high", BOX)], {"links": {"only_surfaces": ["high"]}}),
     "one list after the other": (
         [("only surfaces", BOX), ("except surfaces", BOX)],
         {"links": {"except_surfaces": []}},
@@ -97,19 +97,114 @@ def test_every_parameter_of_a_light_has_a_row_and_absent_controls_have_one_each(
     assert "inner angle" not in labels_of(hand)
 
 
-def test_a_point_source_has_neither_cone_nor_concentration_and_says_why(hand: Hand) -> None:
-    hand.pick("kind")
-    assert light_of(hand).direction == pytest.approx(KEY.axis)
-    hand.pick("kind")
-    light = light_of(hand)
-    assert (light.aim, light.direction, light.cone_angle, light.concentration) == (None, None, None, 0)
+# The kind of a light, what it follows, and what changes with its other parameters.
+
+MIDDLE = (0.5, 0.5, 0.5)
+SOFT = Light(
+    "key", (2, -3, 4), aim=(0.5, 0.5, 1), concentration=2, cone_angle=30, inner_angle=25, at_infinity=True
+)
+
+
+def row(hand: Hand, label: str) -> Any:
+    """A row of the menu, as it is now."""
+    hand.viewer.tell("")
+    return hand.widget(label)
+
+
+def put_light(hand: Hand, light: Light) -> None:
+    """Make a light the only one, as an edit."""
+    hand.viewer.session.edit(boxes().replace(lights=[light]))
+
+
+@pytest.mark.parametrize("light", [SOFT, SOFT.replace(direction=(1, 0, -1)), Light("key", SOFT.position)])
+def test_every_kind_can_be_chosen_from_every_other(hand: Hand, light: Light) -> None:
+    for kind in (POINT, AIM, DIRECTION):
+        put_light(hand, light)
+        row(hand, "kind").choose(kind)
+        now = light_of(hand)
+        assert row(hand, "kind").present == kind
+        assert [now.aim is not None, now.direction is not None] == [kind == AIM, kind == DIRECTION]
+        assert now == Light("key", SOFT.position) if kind == POINT else now.position == SOFT.position
+        if light.axis is None and kind == AIM:
+            assert now.aim == MIDDLE
+        elif light.axis is not None and kind != POINT:
+            assert now.axis == pytest.approx(light.axis)
+            assert (now.concentration, now.cone_angle) == (2, 30)
+
+
+def test_a_point_source_says_why_it_has_neither_cone_nor_concentration(hand: Hand) -> None:
+    row(hand, "kind").choose(POINT)
+    dim = [row.label for row in hand.viewer.board.content.rows() if row.why_not]
+    assert dim == ["concentration", "cone angle", "at infinity"]
     before = hand.scene
     hand.pick("cone angle", BOX)
     assert told(hand) == ("cone angle: a point source has no axis; choose the kind aim first", True)
     hand.pull("concentration", 0.2, 0.8)
     assert hand.scene is before
-    hand.pick("kind")
-    assert light_of(hand).aim == (0.5, 0.5, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("light", "aim"),
+    [
+        (Light("key", (0.5, 0.5, 4), direction=(0, 0, -2)), MIDDLE),
+        (Light("key", (0.5, 0.5, 4), direction=(1, 0, 0)), (4, 0.5, 4)),
+        # From the middle of the object a light is aimed down.
+        (Light("key", MIDDLE), (0.5, 0.5, -0.5)),
+    ],
+)
+def test_a_directed_light_is_aimed_ahead(hand: Hand, light: Light, aim: tuple[float, ...]) -> None:
+    put_light(hand, light)
+    row(hand, "kind").choose(AIM)
+    assert light_of(hand).aim == pytest.approx(aim)
+
+
+def test_a_light_can_follow_the_eye_and_each_light_with_an_aim_and_stays_where_it_is(hand: Hand) -> None:
+    session = hand.viewer.session
+    key, fill = SOFT.replace(at_infinity=False), Light("fill", (1, -2, 2), direction=(0, 1, -1))
+    session.edit(boxes().replace(lights=[key, fill]).with_view(eye=(3, -5, 2), angle=20))
+    assert row(hand, "follows").names == ("world", "eye")
+    session.choose_light("fill")
+    assert (row(hand, "follows").names, row(hand, "follows").present) == (("world", "eye", "key"), "world")
+    before, picture = session.scene.lights_in_world["fill"], session.studio.picture.intensity
+    for follows in ("eye", "key", "eye", "world"):
+        row(hand, "follows").choose(follows)
+        light = session.scene.lights_in_world["fill"]
+        assert light_of(hand, "fill").follows == (None if follows == "world" else follows)
+        assert light.position == pytest.approx(before.position)
+        assert light.direction == pytest.approx(before.direction)
+        assert row(hand, "follows").present == follows
+        assert all_close(session.studio.picture.intensity, picture, abs=1e-5)
+    # No light is offered that follows this one.
+    row(hand, "follows").choose("key")
+    row(hand, "kind").choose(AIM)
+    session.choose_light("key")
+    assert row(hand, "follows").names == ("world", "eye")
+    # A light that follows gets an aim where it shines, and a direction from there.
+    session.choose_light("fill")
+    row(hand, "follows").choose("eye")
+    for kind in (AIM, DIRECTION):
+        row(hand, "kind").choose(kind)
+        assert row(hand, "kind").present == kind
+        assert session.scene.lights_in_world["fill"].axis == pytest.approx(before.axis)
+    row(hand, "kind").choose(POINT)
+    row(hand, "kind").choose(AIM)
+    assert session.scene.lights_in_world["fill"].aim == pytest.approx(MIDDLE)
+
+
+def test_choosing_a_falloff_gives_a_light_a_reach_and_keeps_one_that_it_has(hand: Hand) -> None:
+    row(hand, "falloff").choose("quadratic")
+    assert light_of(hand).reach == pytest.approx(hand.viewer.session.world.size)
+    row(hand, "reach").put(7)
+    row(hand, "falloff").choose("linear")
+    assert (light_of(hand).reach, light_of(hand).falloff) == (7, "linear")
+
+
+@pytest.mark.parametrize(("cone", "inner"), [(40, 25), (25, 25), (20, 20), (None, None)])
+def test_the_inner_angle_stays_within_the_cone(hand: Hand, cone: float | None, inner: float | None) -> None:
+    put_light(hand, SOFT)
+    bar = row(hand, "cone angle")
+    bar.put(cone) if cone else bar.flip()
+    assert (light_of(hand).cone_angle, light_of(hand).inner_angle) == (cone, inner)
 
 
 def chosen(hand: Hand) -> Any:
@@ -131,6 +226,8 @@ def test_a_light_is_added_and_chosen(hand: Hand, label: str, share: float, name:
     assert [light.name for light in hand.scene.lights] == ["key", "fill", name]
     assert told(hand) == (message, False)
     assert chosen(hand) == name
+    # Without a keyboard, nobody is asked for a name.
+    assert not hand.viewer.board.typing.is_on
     if label == "mirror":
         # On the other side of the object.
         assert light_of(hand, name).position == (-1, -3, 4)
@@ -141,16 +238,23 @@ def test_a_light_is_added_and_chosen(hand: Hand, label: str, share: float, name:
     assert hand.scene is before
 
 
-def test_a_light_is_renamed_to_a_name_that_is_free_and_stays_chosen(hand: Hand) -> None:
+def test_a_new_light_is_named_by_return_and_is_one_step(hand: Hand) -> None:
     hand.viewer.session.has_keyboard = True
-    for name in ("fill", "light"):
-        hand.pick("name")
-        hand.type(name)
-        hand.press("return")
-        assert told(hand)[1] == (name == "fill")
-        hand.press("escape")
-        hand.viewer.session.turn_to("lights")
-    assert chosen(hand) == "light"
+    before = hand.scene
+    hand.pick("add", 0.75)
+    assert hand.hint == "name of the light: key 2"
+    # A name that is taken stays to be typed over.
+    hand.type("key")
+    hand.press("return")
+    assert (told(hand)[1], hand.hint) == (True, "name of the light: key")
+    hand.type("moon")
+    hand.press("return")
+    assert [light.name for light in hand.scene.lights] == ["key", "fill", "moon"]
+    assert chosen(hand) == "moon"
+    assert hand.viewer.studio.history.to_undo == (before,)
+    hand.pick("add", 0.75)
+    hand.press("escape")
+    assert [light.name for light in hand.scene.lights][3:] == ["moon 2"]
 
 
 def test_lights_are_removed_to_the_last_and_added_again(hand: Hand) -> None:
@@ -161,6 +265,9 @@ def test_lights_are_removed_to_the_last_and_added_again(hand: Hand) -> None:
     assert labels_of(hand) == ["add a light"]
     hand.pick("add a light")
     assert [light.name for light in hand.scene.lights] == ["light"]
+    undo(hand)
+    hand.pick("three-point")
+    assert [light.name for light in hand.scene.lights] == ["key", "fill", "back"]
 
 
 # The arrangements.
@@ -192,12 +299,6 @@ def test_an_arrangement_is_seen_while_the_pointer_is_over_it_and_taken_by_a_clic
     assert any(each.label.startswith("highlight") for each in hand.viewer.board.content.handles)
     undo(hand)
     assert hand.scene is before
-
-
-def test_a_scene_without_lights_begins_with_an_arrangement(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "lights", boxes().replace(lights=()))
-    hand.pick("three-point")
-    assert [light.name for light in hand.scene.lights] == ["key", "fill", "back"]
 
 
 # Half-spaces.
@@ -248,15 +349,12 @@ def test_three_points_of_the_object_make_a_half_space_in_one_step(hand: Hand) ->
     before = hand.scene
     seen = [hand.viewer.studio.seen_at(line, element) for element, line in PLACES]
     hand.pick("half spaces")
-    assert told(hand) == (PROMPT.format("first"), False)
-    hand.click(5, 400)
-    assert told(hand) == (f"no point is seen there; {PROMPT.format('first')}", True)
-    hand.click(*PLACES[0])
-    assert told(hand) == (PROMPT.format("second"), False)
-    hand.click(*PLACES[1])
-    assert told(hand) == (PROMPT.format("third"), False)
-    assert hand.scene is before
-    hand.click(*PLACES[2])
+    for place, number in zip(PLACES, ("first", "second", "third"), strict=True):
+        assert told(hand) == (PROMPT.format(number), False)
+        hand.click(5, 400)
+        assert told(hand) == (f"no point is seen there; {PROMPT.format(number)}", True)
+        assert hand.scene is before
+        hand.click(*place)
     assert told(hand) == ("half-space added to key: plane", False)
     (plane,) = light_of(hand).half_spaces
     for each in seen:
@@ -311,12 +409,10 @@ def test_picking_is_ended_by_escape_its_row_and_another_screen(hand: Hand, by: s
         assert (hand.display.words[line - 5 : line + 6, element - 5 : element + 6] == YELLOW).any()
     middle = np.mean(PLACES[:2], axis=0).astype(int)
     assert (hand.display.words[middle[1] - 1 : middle[1] + 2, middle[0]] == YELLOW).any()
-    row: Any = hand.widget("half spaces")
-    assert (row.value, row.is_chosen) == ("2/3", True)
+    assert (row(hand, "half spaces").value, row(hand, "half spaces").is_chosen) == ("2/3", True)
     ENDINGS[by](hand)
     assert hand.viewer.page == "lights"
-    row = hand.widget("half spaces")
-    assert (row.value, row.is_chosen) == ("add", False)
+    assert (row(hand, "half spaces").value, row(hand, "half spaces").is_chosen) == ("add", False)
     hand.click(*PLACES[2])
     assert light_of(hand).half_spaces == ()
     assert len(hand.viewer.board.content.handles) == handles
@@ -380,14 +476,15 @@ def test_the_list_shows_and_sets_every_light(hand: Hand) -> None:
     hand.type("1.25")
     hand.press("return")
     assert light_of(hand, "fill").intensity == 1.25
-
-
-def test_a_drag_along_a_bar_of_the_list_is_one_step(hand: Hand) -> None:
-    before, (left, top, right, _) = hand.scene, row_of(hand, "fill")[1].area
-    hand.drag((left + 20, top + 8), (left + 29, top + 8), (right + 200, top + 90))
-    assert light_of(hand, "fill") == before.lights["fill"].replace(intensity=2.0)
-    undo(hand)
-    assert hand.scene is before
+    # A click on the name of the chosen light renames it, as one step.
+    hand.viewer.session.has_keyboard = True
+    before = hand.scene
+    click_at(hand, "fill", 0, 0.3)
+    hand.type("sky")
+    hand.press("return")
+    assert [light.name for light in hand.scene.lights] == ["key", "sky"]
+    assert chosen(hand) == "sky"
+    assert hand.viewer.studio.history.to_undo[-1] is before
 
 
 def test_a_light_that_is_alone_gives_the_switches_of_all_lights_back(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Mesh, Scene, Surface, View, render, scene_of
+from autocolor import Scene, render
 from autocolor.arrays import Words
 from autocolor.images import display_image
 from autocolor.mapping.palette import thumbnail
@@ -24,13 +24,12 @@ from autocolor.screens.variants_screen import ON_PAGE, PLACES
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.items import text
 from autocolor.widgets.menu import WORK
-from autocolor.widgets.sheet import Sheet
 from ramtek_emu import GMR_9300, PRINCETON_9300, Ramtek9300, Recorder, instructions
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
-from tests.autocolor.screens.boxes import hand_at, told, undo
+from tests.autocolor.screens.boxes import hand_at, told
 from tests.autocolor.screens.hand import Hand
-from tests.small import boxes, grid
+from tests.small import boxes
 from tests.tables import first
 
 SCENE = boxes()
@@ -133,11 +132,8 @@ def test_a_color_sends_entries_and_no_word_of_the_picture(recorded: Recorded) ->
     assert "100.0%" in rows[4]
     # What is not shown sends nothing.
     recorded.edit(EDITS["name"](recorded.viewer.studio.scene))
-    last = last_edit(recorded.viewer)
-    assert len(last.words) == 0
-    assert rows_of_edit(last, GMR_9300)[1].text == (
-        "no word: no entry of the lookup table, and no word of the picture"
-    )
+    row = rows_of_edit(last_edit(recorded.viewer), GMR_9300)[1]
+    assert row.text == "no word: no entry of the lookup table, and no word of the picture"
 
 
 def test_a_color_that_is_undone_from_another_screen_needs_no_word_of_the_picture(recorded: Recorded) -> None:
@@ -149,12 +145,7 @@ def test_a_color_that_is_undone_from_another_screen_needs_no_word_of_the_picture
     last = last_edit(viewer)
     assert names_in(last.words) == ["LAM"]
     assert last.other_words > viewer.studio.words.size // 2
-
-
-def test_turning_to_another_screen_is_no_edit(recorded: Recorded) -> None:
-    viewer = recorded.viewer
-    recorded.edit(EDITS["view"](SCENE))
-    last = last_edit(viewer)
+    # Turning to another screen is no edit.
     for name in viewer.screens:
         viewer.session.turn_to(name)
         viewer.tell("")
@@ -221,9 +212,6 @@ def test_an_edit_of_colors_on_the_screen_is_listed_there(recorded: Recorded) -> 
     viewer.on_key("c", typed="c")
     viewer.on_tick()
     assert viewer.page == "sent"
-    whole = Ramtek9300()
-    Sheet(whole).show(viewer.board.page())
-    assert np.array_equal(recorded.display.words, whole.words)
     row = rows_of_edit(last_edit(viewer), GMR_9300)[0]
     assert text(row.text, LEFT, TOP, row.ink) in viewer.board.page().items
 
@@ -268,35 +256,28 @@ def rest(hand: Hand) -> None:
 
 def shown_at(hand: Hand, place: int) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
     """The colors of a small picture on the display."""
-    display = hand.viewer.display
-    assert isinstance(display, Ramtek9300)
     left, top = PLACES[place].left + FRAME, PLACES[place].top + FRAME
-    return display.field()[top : top + LINES, left : left + ELEMENTS].astype(np.int64)
+    return hand.display.field()[top : top + LINES, left : left + ELEMENTS].astype(np.int64)
 
 
 def names(hand: Hand) -> list[str]:
     return [each.label for each in hand.viewer.board.content.widgets]
 
 
-def test_without_a_variant_there_is_nothing_to_come_back_to(hand: Hand) -> None:
+def test_a_scene_is_kept_and_come_back_to_in_one_step(hand: Hand) -> None:
     for label in ("come back", "drop"):
         hand.pick(label)
         assert told(hand) == (f"{label}: no variant is kept yet", True)
-
-
-def test_a_scene_is_kept_and_come_back_to_in_one_step(hand: Hand) -> None:
-    kept = hand.viewer.studio.scene
+    kept = hand.scene
     hand.pick("keep")
     assert told(hand) == ("kept as A", False)
     hand.viewer.studio.recolor("low", object_color="#123456")
-    changed = hand.viewer.studio.scene
+    changed = hand.scene
     hand.pick("come back")
-    assert hand.viewer.studio.scene.equals(kept)
+    assert hand.scene.equals(kept)
     assert told(hand) == ("A is the scene again; undo goes back", False)
     assert hand.viewer.session.screen == "picture"
-    hand.open_menu()
-    undo(hand)
-    assert hand.viewer.studio.scene is changed
+    assert hand.viewer.studio.history.to_undo[-1] is changed
 
 
 def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
@@ -311,13 +292,28 @@ def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
     assert hand.viewer.studio.scene.surfaces["low"].paint.object_color == (0, 0, 128)
 
 
-def test_a_variant_has_a_name_of_its_own_where_there_is_a_keyboard(hand: Hand) -> None:
+def test_a_variant_is_named_when_it_is_kept_and_renamed_by_a_second_click(hand: Hand) -> None:
     hand.viewer.session.has_keyboard = True
-    for is_in_use in (False, True):
-        hand.pick("keep as")
-        hand.type("red")
+    for row, name in (("keep", ""), ("keep", "dusk"), ("keep as", "red")):
+        hand.pick(row)
+        hand.type(name)
         hand.press("return")
-        assert (list(hand.viewer.studio.variants), told(hand)[1]) == (["red"], is_in_use)
+        hand.viewer.studio.recolor("low", blend=0.25 + len(name) / 100)
+    assert names(hand) == ["A", "dusk", "red"]
+    hand.pick("keep as")
+    hand.type("dusk")
+    hand.press("return")
+    assert told(hand)[1]
+    hand.press("escape")
+    scene = hand.viewer.studio.variants["A"].scene
+    for _ in range(2):
+        hand.pick("A", 0.5)
+    assert hand.hint == "name of the variant: A"
+    hand.type("dawn")
+    hand.press("return")
+    assert names(hand) == ["dawn", "dusk", "red"]
+    assert hand.viewer.studio.variants["dawn"].scene is scene
+    assert hand.hint.startswith("variant dawn")
 
 
 @pytest.mark.parametrize("number", first(1, [4, 1, ON_PAGE]))
@@ -375,30 +371,3 @@ def test_many_variants_have_pages(hand: Hand) -> None:
         hand.pick("drop")
     assert len(names(hand)) == ON_PAGE
     assert "page" not in [row.label for row in hand.viewer.board.content.rows()]
-
-
-def test_a_small_picture_that_is_refused_is_left_out(tmp_path: Path) -> None:
-    hand = hand_at(tmp_path, "variants")
-    # A strip between the middles of two pixels of the picture, where the small one has the middle of a pixel.
-    pixel = 2.0 / 480
-    left = (10.0 - 320) * pixel
-    meshes = [
-        grid(1, 1, (-2.0, 0, -2.0), (4.0, 0, 0), (0, 0, 4.0), "wall"),
-        grid(1, 1, (left - pixel / 4, -1e-4, -2.0), (pixel / 2, 0, 0), (0, 0, 4.0), "strip"),
-    ]
-    scene = scene_of(
-        Mesh.joined(meshes),
-        surface_of_part={"wall": "wall", "strip": "strip"},
-        surfaces=[Surface("wall"), Surface("strip")],
-        lights=[Light("key", (0, -5, 0), 3e38)],
-        view=View((0, -1, 0), target=(0, 0, 0), field_of_view=90.0),
-    )
-    scene = scene.with_surface("wall", diffuse=0.1, specular=0.1).with_surface("strip", diffuse=1, specular=1)
-    render(scene)
-    with pytest.raises(InputError, match="intensities must stay below"):
-        render(scene, (2 * ELEMENTS, 2 * LINES))
-    hand.viewer.studio.edit(scene)
-    hand.pick("keep")
-    rest(hand)
-    assert pictures(hand) == 0
-    assert told(hand) == ("kept as A", False)

@@ -110,10 +110,6 @@ def shown(hand: Hand) -> tuple[bytes, bytes]:
     return seen_on(hand)
 
 
-def release(hand: Hand) -> None:
-    hand.viewer.on_release("b")
-
-
 def pick_row(hand: Hand, label: str, share: float = 0.25) -> None:
     hand.open_menu()
     hand.pick(label, share)
@@ -130,7 +126,7 @@ def test_the_state_before_is_shown_while_the_key_is_held(hand: Hand, wait: Calla
         assert hand.hint == f"shown: {BEFORE}; now: key: position, aim"
         assert shown(hand) == ball_alone()
         assert hand.scene is not ball()
-        release(hand)
+        hand.viewer.on_release("b")
         assert hand.message == f"shown: {NOW}"
         assert shown(hand) == now
     assert now == alone(hand.scene)
@@ -169,24 +165,14 @@ def test_each_pick_of_the_row_shows_the_other_state_and_a_pick_in_the_picture_th
     assert chosen not in hand.viewer.caption
 
 
-def undo_and_redo(hand: Hand) -> None:
-    for share in (0.1, 0.9):
-        pick_row(hand, " ", share)
-
-
-def leave_and_come_back(hand: Hand) -> None:
-    hand.turn_to("mapping")
-    hand.turn_to("picture")
-
-
 ENDINGS: dict[str, Callable[[Hand], object]] = {
     "a drag over the picture": lambda hand: hand.drag((60, 60), (90, 60)),
     "an undo": lambda hand: pick_row(hand, " ", 0.1),
     "a drag where the highlight is": lambda hand: hand.drag(PLACE, (300, 200)),
     "a switch": lambda hand: pick_row(hand, "fill", 0.95),
-    "an undo with a redo": undo_and_redo,
+    "an undo with a redo": lambda hand: hand.press("Ctrl+Z", "Ctrl+Y"),
     "a key": lambda hand: hand.press("c"),
-    "another screen": leave_and_come_back,
+    "another screen": lambda hand: hand.press("Ctrl+2", "Ctrl+1"),
     "watching": lambda hand: hand.press("w", "escape"),
 }
 
@@ -209,7 +195,7 @@ def test_handles_and_marks_of_the_present_light_are_not_there_meanwhile(hand: Ha
 
 def test_where_colors_alone_differ_no_word_does(hand: Hand) -> None:
     hand.press("b")
-    release(hand)
+    hand.viewer.on_release("b")
     dragged = hand.scene
     hand.press("c")
     words, entries = shown(hand)
@@ -239,16 +225,16 @@ def test_over_a_screen_without_the_picture_the_picture_comes_and_then_the_screen
         hand.press("b")
         assert hand.viewer.page == "picture"
         assert shown(hand) == ball_alone()
-        release(hand)
+        hand.viewer.on_release("b")
         assert hand.viewer.page == screen
         assert hand.message == f"shown: {NOW}"
     # The screen that the user turns to meanwhile stays, and a later release leads nowhere.
     hand.press("b", "f4" if screen != "entries" else "f1")
     page = hand.viewer.page
-    release(hand)
+    hand.viewer.on_release("b")
     assert hand.viewer.page == page
     hand.press("escape")
-    release(hand)
+    hand.viewer.on_release("b")
     assert hand.viewer.page == "picture"
 
 
@@ -259,7 +245,7 @@ def test_the_state_before_is_shown_in_the_present_view(hand: Hand) -> None:
     before = alone(ball().replace(view=view))
     hand.press("b")
     assert shown(hand) == before
-    release(hand)
+    hand.viewer.on_release("b")
     hand.press("Ctrl+Z")
     assert shown(hand) == before
     hand.press("Left", "Ctrl+Y")
@@ -296,7 +282,7 @@ def test_a_variant_is_compared_until_comparing_ends_or_it_is_dropped(hand: Hand)
     hand.turn_to("picture")
     hand.press("b")
     assert shown(hand) == alone(before.replace(view=view))
-    release(hand)
+    hand.viewer.on_release("b")
     # A variant that was dropped is compared no longer.
     hand.turn_to("variants")
     hand.pick("compare")
@@ -449,57 +435,42 @@ def test_a_scene_in_no_file_has_nothing_to_read_again(tmp_path: Path, look: Look
     hand = Hand(Viewer(small_scene(), Ramtek9300(), folder=tmp_path))
     look(hand)
     hand.press("Ctrl+r")
-    assert told(hand) == (
-        "the scene must be in a file to be read again, and it is in none; save it",
-        True,
-    )
+    assert told(hand) == ("the scene must be in a file to be read again, and it is in none; save it", True)
 
 
 # An edit of a light that changes nothing that is seen.
 
 EXPOSED = "exposed again: {} light looks the same"
 ALONE = boxes().only_lights("key").replace(ambient=0)
-UNSEEN: dict[str, tuple[Scene, Callable[[Scene], Scene], str]] = {
-    "brighter": (ALONE, lambda scene: scene.with_light("key", intensity=2), EXPOSED.format("more")),
-    "without intensity": (
-        boxes().with_light("fill", intensity=0),
-        lambda scene: scene.with_light("fill", position=(0, -5, 0)),
-        "no change: light fill has the intensity 0",
-    ),
-    "added behind": (
-        boxes(),
-        lambda scene: scene.with_new_light("far", position=(0.5, 9, 0.5)),
+LIT = boxes()
+DIM, BEHIND = LIT.with_light("fill", intensity=0), LIT.with_light("fill", position=(0.5, 9, 0.5))
+DARK, HELD = ALONE.only_lights(), ALONE.replace(exposure={"object": (0, 1000)})
+UNSEEN = [
+    (ALONE, ALONE.with_light("key", intensity=2), EXPOSED.format("more")),
+    (DIM, DIM.with_light("fill", position=(0, -5, 0)), "no change: light fill has the intensity 0"),
+    (
+        LIT,
+        LIT.with_new_light("far", position=(0.5, 9, 0.5)),
         "no change: light far shines on nothing that is seen",
     ),
-    "switched off behind": (
-        boxes().with_light("fill", position=(0.5, 9, 0.5)),
-        lambda scene: scene.with_light("fill", on=False),
-        "no change: light fill shines on nothing that is seen",
-    ),
-    "one of two off": (
-        ALONE,
-        lambda scene: scene.with_light("fill", intensity=2),
-        "no change: light fill is off",
-    ),
-    "two off": (
-        ALONE.only_lights(),
-        lambda scene: scene.replace(lights=[light.replace(intensity=3) for light in scene.lights]),
+    (BEHIND, BEHIND.with_light("fill", on=False), "no change: light fill shines on nothing that is seen"),
+    (ALONE, ALONE.with_light("fill", intensity=2), "no change: light fill is off"),
+    (
+        DARK,
+        DARK.replace(lights=[light.replace(intensity=3) for light in DARK.lights]),
         "no change: every edited light is off",
     ),
-    "as bright": (
-        ALONE.replace(exposure={"object": (0, 1000)}),
-        lambda scene: scene.with_light("key", intensity=1.000001),
-        "no change: no point that is seen gets another level",
-    ),
-}
+    (HELD, HELD.with_light("key", intensity=1.000001), "no change: no point that is seen gets another level"),
+]
 
 
-@pytest.mark.parametrize("case", UNSEEN)
-def test_an_edit_of_a_light_that_changes_nothing_says_why(tmp_path: Path, case: str) -> None:
-    scene, edit, message = UNSEEN[case]
+@pytest.mark.parametrize(("scene", "edited", "message"), UNSEEN)
+def test_an_edit_of_a_light_that_changes_nothing_says_why(
+    tmp_path: Path, scene: Scene, edited: Scene, message: str
+) -> None:
     hand = hand_before(scene, tmp_path)
     hand.press("escape")
-    hand.viewer.session.edit(edit(hand.scene))
+    hand.viewer.session.edit(edited)
     hand.viewer.on_tick()
     assert told(hand) == (message, message.startswith("no change"))
     hand.viewer.tell("")

@@ -17,7 +17,6 @@ from autocolor.widgets.items import (
     Area,
     Item,
     area_of,
-    between,
     clipped,
     filled,
     image,
@@ -75,14 +74,6 @@ def test_a_character_has_7_elements_and_9_lines() -> None:
     assert text("abc", 10, 5).area == (10, 5, 30, 13)
     nothing = text("", 10, 5)
     assert (nothing.area, nothing.is_solid) == ((10, 5, 16, 13), False)
-
-
-def test_lines_that_leave_an_area_are_drawn_inside_it_and_come_back() -> None:
-    area = Area(10, 10, 20, 20)
-    display = painted(lines([[(5, 15), (25, 15), (25, 12), (12, 12)]], WHITE, area))
-    assert (display.words[15, 10:21] == WHITE).all()
-    assert (display.words[12, 12:21] == WHITE).all()
-    assert np.count_nonzero(display.words == WHITE) == 11 + 9
 
 
 def test_a_line_of_any_length_keeps_its_slope() -> None:
@@ -145,7 +136,7 @@ places = st.tuples(st.floats(-100, 100), st.floats(-100, 100))
 def test_what_is_left_of_a_stroke_is_all_of_it_that_is_in_the_area(
     start: tuple[float, float], end: tuple[float, float]
 ) -> None:
-    found = clipped(between(np.array([start]), np.array([end])), AREA)
+    found = clipped(np.array([[*start, *end]]), AREA)
     along = np.linspace(0, 1, 201)[:, None]
     points = np.array(start) + along * (np.array(end) - np.array(start))
     inside = [point for point in points.tolist() if AREA.has(*point)]

@@ -110,16 +110,21 @@ class Lamp(Row):
 
 
 class Table:
-    """A lamp whose rows change it."""
+    """A lamp whose rows change it, in a world that knows some names. `options` are for `rows_of`."""
 
-    def __init__(self, lamp: Lamp | None = None) -> None:
+    def __init__(
+        self, lamp: Lamp | None = None, names: Sequence[str] = ("a", "b", "c"), **options: Any
+    ) -> None:
         self.lamp = Lamp() if lamp is None else lamp
+        self.names, self.pages, self.options = names, dict[str, int](), options
 
     def put(self, changes: Mapping[str, Any]) -> None:
         self.lamp = replaced(self.lamp, changes)
 
     def rows(self, **options: Any) -> dict[str, Widget]:
-        return {row.label: row.at(AREA) for row in rows_of(self.lamp, self.put, WORLD, **options)}
+        world = World(WORLD.low, WORLD.high, TableNames(lambda table: self.names, self.pages))
+        rows = rows_of(self.lamp, self.put, world, **self.options, **options)
+        return {row.label: row.at(AREA) for row in rows}
 
     def bar(self, label: str) -> Bar:
         row = self.rows()[label]
@@ -270,22 +275,9 @@ def test_the_end_beyond_everything_is_less_than_two_steps_away(
 NEXT = Place(600, 8)
 
 
-class Posts(Table):
-    """A lamp in a world that knows some names."""
-
-    def __init__(self, lamp: Lamp | None = None, names: Sequence[str] = ("a", "b", "c")) -> None:
-        super().__init__(lamp)
-        self.pages: dict[str, int] = {}
-        self.names = names
-
-    def rows(self, **options: Any) -> dict[str, Widget]:
-        world = World(WORLD.low, WORLD.high, TableNames(lambda table: self.names, self.pages))
-        left_out = [name for name in vars(self.lamp) if name not in ("post", "follows", "walls")]
-        return {row.label: row.at(AREA) for row in rows_of(self.lamp, self.put, world, leave_out=left_out)}
-
-    @property
-    def ticked(self) -> dict[str, bool]:
-        return {label: row.is_on for label, row in self.rows().items() if isinstance(row, Switch)}
+def ticked(table: Table) -> dict[str, bool]:
+    """The rows of a list that are switches, and whether they are on."""
+    return {label: row.is_on for label, row in table.rows().items() if isinstance(row, Switch)}
 
 
 @pytest.mark.parametrize(
@@ -295,7 +287,7 @@ class Posts(Table):
 def test_a_name_is_chosen_among_those_of_its_table_or_none_if_it_may_be_absent(
     label: str, names: Sequence[str], taken: list[str | None]
 ) -> None:
-    menu, found = Posts(names=names), []
+    menu, found = Table(names=names), []
     for _ in names:
         menu.rows()[label].pick(NEXT)
         found.append(vars(menu.lamp)[label])
@@ -303,11 +295,11 @@ def test_a_name_is_chosen_among_those_of_its_table_or_none_if_it_may_be_absent(
 
 
 def test_a_list_is_made_by_its_box_and_names_go_in_and_out_in_the_order_of_their_table() -> None:
-    menu = Posts()
-    assert menu.ticked == {"walls": False}
+    menu = Table(columns=["walls"])
+    assert ticked(menu) == {"walls": False}
     menu.rows()["walls"].pick(NEXT)
     assert vars(menu.lamp)["walls"] == ()
-    assert menu.ticked == {"walls": True, "  a": False, "  b": False, "  c": False}
+    assert ticked(menu) == {"walls": True, "  a": False, "  b": False, "  c": False}
     for label in ("  b", "  c", "  a", "  b"):
         menu.rows()[label].pick(NEXT)
     assert menu.lamp.walls == ("a", "c")
@@ -320,19 +312,19 @@ def test_a_list_is_made_by_its_box_and_names_go_in_and_out_in_the_order_of_their
 
 def test_many_names_come_in_pages_the_last_of_which_stands_for_those_that_went() -> None:
     names = [f"n{number}" for number in range(2 * NAMES_A_PAGE + 1)]
-    menu, seen = Posts(Lamp(walls=("n1",)), names), list[str]()
+    menu, seen = Table(Lamp(walls=("n1",)), names, columns=["walls"]), list[str]()
     for title in ("1 of 3", "2 of 3", "3 of 3"):
         page = menu.rows()["page"]
         assert isinstance(page, Choice)
         assert (page.present, page.key) == (title, "walls.page")
         assert page.help == f"The page of the {len(names)} walls that is shown below; 1 are in the list."
-        seen += [label.strip() for label in menu.ticked if label != "walls"]
+        seen += [label.strip() for label in ticked(menu) if label != "walls"]
         page.pick(NEXT)
     assert seen == names
-    assert "  n0" in menu.ticked
+    assert "  n0" in ticked(menu)
     menu.pages["walls"] = 5
     for count in (NAMES_A_PAGE + 1, NAMES_A_PAGE, 1):
         menu.names = names[:count]
-        assert list(menu.ticked)[-1] == f"  n{count - 1}"
+        assert list(ticked(menu))[-1] == f"  n{count - 1}"
     menu.names = []
-    assert list(menu.ticked) == ["walls"]
+    assert list(ticked(menu)) == ["walls"]

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -86,7 +85,7 @@ def test_a_light_is_moved_by_two_picks_in_each_of_two_views_as_in_the_paper() ->
     assert is_undone_at_once(hand, before)
 
 
-def test_a_pick_outside_of_its_view_is_refused_and_the_light_is_still_held() -> None:
+def test_a_pick_outside_of_its_view_is_refused_and_a_drag_stays_at_its_edge() -> None:
     hand = opened(boxed(KEY))
     before = hand.scene
     hand.click(*place_of(hand, MovablePoint(LIGHT, TOP, "key")))
@@ -98,6 +97,11 @@ def test_a_pick_outside_of_its_view_is_refused_and_the_light_is_still_held() -> 
     hand.click(100, 90)
     assert where(hand, TOP) == pytest.approx((100, 90), abs=0.6)
     assert is_undone_at_once(hand, before)
+    # A drag stays at the edge.
+    hand.drag(place_of(hand, MovablePoint(LIGHT, TOP, "key")), (300, 120), (400, 300))
+    assert where(hand, TOP) == pytest.approx((TOP.area.right, TOP.area.bottom), abs=0.6)
+    hand.drag(place_of(hand, MovablePoint(LIGHT, SIDE, "key")), (10, 10))
+    assert where(hand, SIDE) == pytest.approx((SIDE.area.left, SIDE.area.top), abs=0.6)
 
 
 def test_the_lines_of_a_light_that_is_held_go_when_it_is_let_go_of() -> None:
@@ -116,30 +120,6 @@ def test_the_lines_of_a_light_that_is_held_go_when_it_is_let_go_of() -> None:
         assert (hand.display.words[240:440, element] == SLATE).sum() < 100
 
 
-def test_a_light_that_is_dragged_beyond_its_view_stays_at_the_edge() -> None:
-    hand = opened(boxed(KEY))
-    hand.drag(place_of(hand, MovablePoint(LIGHT, TOP, "key")), (300, 120), (400, 300))
-    assert where(hand, TOP) == pytest.approx((TOP.area.right, TOP.area.bottom), abs=0.6)
-    hand.drag(place_of(hand, MovablePoint(LIGHT, SIDE, "key")), (10, 10))
-    assert where(hand, SIDE) == pytest.approx((SIDE.area.left, SIDE.area.top), abs=0.6)
-
-
-def test_a_place_that_the_scene_refuses_is_told_and_the_drag_goes_on() -> None:
-    hand = opened(boxed(Light("key", (2.0, -3.0, 0.5), aim=(0.5, 0.5, 0.5))))
-    # The aim is where the pixel of a place is, and the light is dragged there.
-    aim = screen_of(hand).views.placed(TOP, (2.0, -3.0, 0.5), 60, 70)
-    hand.viewer.session.edit(hand.viewer.session.scene.with_light("key", aim=aim))
-    hand.viewer.tell("")
-    hand.grab(*place_of(hand, MovablePoint(LIGHT, TOP, "key")))
-    hand.move(100, 100)
-    near = hand.scene
-    hand.move(60, 70)
-    assert hand.scene is near
-    assert hand.viewer.session.news.is_warning
-    hand.move(50, 90)
-    assert where(hand, TOP) == pytest.approx((50, 90), abs=0.6)
-
-
 def test_a_view_without_a_target_looks_where_the_end_of_its_arrow_was_put() -> None:
     hand = opened(boxed(KEY).replace(view=View((-2.0, -3.0, 2.0), direction=(2.5, 3.5, -1.5))))
     end = point_of(hand, MovablePoint(TARGET, TOP))
@@ -152,32 +132,29 @@ def test_a_view_without_a_target_looks_where_the_end_of_its_arrow_was_put() -> N
     assert view.axes[2] == pytest.approx(wanted / np.linalg.norm(wanted), abs=5e-3)
 
 
-@pytest.mark.parametrize(("end", "low", "high"), [("minimum", 0.9, 0.9), ("maximum", 0.1, 0.1)])
-def test_an_end_of_a_flap_is_dragged_as_far_as_the_other(end: str, low: float, high: float) -> None:
+@pytest.mark.parametrize(("end", "other", "beyond"), [("minimum", 0.9, 240), ("maximum", 0.1, 450)])
+def test_an_end_of_a_flap_is_dragged_as_far_as_the_other(end: str, other: float, beyond: int) -> None:
     hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9)))))
     before = hand.scene
     element, line = place_of(hand, MovablePoint(FLAP, FRONT, "key", "z", end))
-    hand.drag((element, line), (element, line + 3), (element, 240 if end == "minimum" else 450))
-    assert hand.scene.lights["key"].flaps.z == Flap(low, high)
-    assert hand.message == f"key: flap z, {end} {low:g}"
+    hand.drag((element, line), (element, line + 3), (element, beyond))
+    assert hand.scene.lights["key"].flaps.z == Flap(other, other)
+    assert hand.message == f"key: flap z, {end} {other:g}"
     assert is_undone_at_once(hand, before)
 
 
-def test_dragging_beside_everything_moves_the_views_together_and_no_edit_is_made() -> None:
-    hand = opened(boxed(KEY))
-    before, scene = screen_of(hand).views, hand.scene
-    hand.drag((20, 440), (30, 430), (40, 420))
-    assert screen_of(hand).views == before.panned(FRONT, 20, -20)
-    assert hand.scene is scene
-
-
-def test_rescale_moves_nearer_and_fits_everything_the_object_and_a_surface() -> None:
-    hand = opened(boxes_scene())
-    scale = screen_of(hand).views.scale
+def test_the_views_are_rescaled_moved_and_fitted_to_everything_the_object_and_a_surface() -> None:
+    hand = opened(boxes_scene(), shows_all=False)
+    views = fitted_views(hand.scene.object_coordinates)
+    assert screen_of(hand).views == views
     hand.pick("rescale", 0.95)
-    assert screen_of(hand).views.scale == pytest.approx(1.25 * scale)
+    assert screen_of(hand).views == views.zoomed(1.25)
     hand.viewer.on_pointer(20, 440, "wheel up", steps=2)
-    assert screen_of(hand).views.scale == pytest.approx(1.25**2 * scale)
+    views = views.zoomed(1.25).zoomed(1.25)
+    assert screen_of(hand).views == views
+    # A drag beside everything moves the three views together.
+    hand.drag((20, 440), (40, 420))
+    assert screen_of(hand).views == views.panned(FRONT, 20, -20)
     hand.viewer.session.choose_surface("box 1")
     for label, share, points, shown in (
         ("fit all", 0.25, shown_points(hand.scene), "everything"),
@@ -187,6 +164,7 @@ def test_rescale_moves_nearer_and_fits_everything_the_object_and_a_surface() -> 
         hand.pick(label, share)
         assert screen_of(hand).views == fitted_views(points)
         assert hand.message == f"the views show {shown}"
+    assert hand.scene is hand.viewer.studio.history.start
 
 
 def test_a_scene_without_polygons_and_lights_has_three_views_that_stay() -> None:
@@ -249,45 +227,27 @@ def test_pointing_sends_the_message_and_the_mark_alone_and_a_drag_the_small_pict
     assert 232 * 174 < display.words_received - before < 232 * 174 + 30_000
 
 
-def test_the_quarter_shows_the_pixels_at_the_middles_of_its_places() -> None:
-    hand = opened(boxed(KEY))
-    area, words = PICTURE_AREA.inset(8)._replace(top=39, bottom=212), hand.viewer.studio.words
-    lines = [int((2 * place + 1) * 480 / (2 * 174)) for place in range(174)]
-    elements = [int((2 * place + 1) * 640 / (2 * 232)) for place in range(232)]
-    shown = hand.display.words[area.top : area.bottom + 1, area.left : area.right + 1]
-    assert np.array_equal(shown, words[np.ix_(lines, elements)])
-
-
 def test_a_click_turns_to_the_lines_that_the_eye_sees_and_another_back_to_the_picture() -> None:
     hand = opened(boxed(KEY))
 
-    def quarter() -> Words:
+    def quarter(scene: Scene) -> Words:
+        hand.viewer.session.edit(scene)
         hand.move(20, 440)
         hand.viewer.tell("")
         return hand.display.words[:230, 260:500].copy()
 
-    picture = quarter()
+    scene = hand.scene
+    picture = quarter(scene)
     hand.click(*MIDDLE)
-    lines = quarter()
+    lines = quarter(scene)
     # The outline and the three edges in the middle of a cube are seen, and the nine edges behind are not.
     assert 300 < (lines == LIGHT_GRAY).sum() < 500
     assert 100 < (lines == GRAY).sum() < 300
-    hand.viewer.session.edit(hand.scene.with_view(angle=30.0))
-    assert not np.array_equal(quarter(), lines)
-    hand.viewer.session.edit(hand.scene.with_view(angle=0.0))
-    assert np.array_equal(quarter(), lines)
+    assert not np.array_equal(quarter(scene.with_view(angle=30.0)), lines)
     # On a stage that is made, the object has the same lines.
-    hand.viewer.session.edit(hand.scene.replace(stage="bowl"))
-    assert (quarter()[lines == LIGHT_GRAY] == LIGHT_GRAY).all()
-    hand.viewer.session.edit(hand.scene.replace(stage="none"))
+    assert (quarter(scene.replace(stage="bowl"))[lines == LIGHT_GRAY] == LIGHT_GRAY).all()
     hand.click(*MIDDLE)
-    assert np.array_equal(quarter(), picture)
-
-
-def test_the_screen_opens_with_the_object_large() -> None:
-    hand = opened(coupe_scene(), shows_all=False)
-    low, high = hand.scene.object_bounds
-    assert screen_of(hand).views.scale * (high[0] - low[0]) > 150
+    assert np.array_equal(quarter(scene), picture)
 
 
 @pytest.mark.parametrize("what", [EYE, LIGHT])
@@ -336,14 +296,9 @@ def test_the_chosen_light_has_rows_of_its_parameters_and_the_eye_has_none() -> N
 # The aims of the coupe's lights are a few pixels from each other when the screen opens.
 
 
-@cache
-def coupe_scene() -> Scene:
-    return read_scene(Path(__file__).parents[4] / "scenes/coupe")
-
-
 @pytest.fixture
 def coupe() -> Hand:
-    return opened(coupe_scene())
+    return opened(read_scene(Path(__file__).parents[4] / "scenes/coupe"))
 
 
 def signs_of(hand: Hand) -> list[Handle]:
@@ -358,12 +313,8 @@ def test_lights_and_aims_that_are_close_together_are_told_apart_by_numerals(coup
     for one, other in combinations(signs_of(coupe), 2):
         assert not one.sign.overlaps(other.sign)
     for handle in signs_of(coupe):
-        left, top, right, bottom = handle.sign
-        for place in ((left, top), (right, bottom), ((left + right) // 2, (top + bottom) // 2)):
+        for place in (handle.sign[:2], handle.sign[2:]):
             coupe.move(*place)
-            found = coupe.viewer.board.handle_at(*place)
-            assert found is not None
-            assert found.key == handle.key
             # The second cursor marks the point itself.
             assert coupe.viewer.board.mark == (handle.element, handle.line)
             assert coupe.viewer.board.messages[0].text.startswith(handle.label)
@@ -372,14 +323,12 @@ def test_lights_and_aims_that_are_close_together_are_told_apart_by_numerals(coup
 def test_a_drag_of_a_numeral_moves_its_point_as_far_as_the_pointer(coupe: Hand) -> None:
     before = coupe.scene
     for light in ("key", "rim"):
-        handle = handle_of(coupe, MovablePoint(AIM, SIDE, light))
+        aim = MovablePoint(AIM, SIDE, light)
+        handle = handle_of(coupe, aim)
         element, line = handle.sign.left + 3, handle.sign.top + 4
         coupe.drag((element, line), (element + 9, line - 7), (element + 20, line - 15))
-        scene = coupe.scene
-        at = screen_of(coupe).views.position(SIDE, scene.lights_in_world[light].aim or (0, 0, 0))
-        assert (round(at[0]), round(at[1])) == (handle.element + 20, handle.line - 15)
-        moved = [one.name for one, other in zip(scene.lights, before.lights, strict=True) if one != other]
-        assert moved == [light]
+        assert place_of(coupe, aim) == (handle.element + 20, handle.line - 15)
+        assert [one.name for one in coupe.scene.lights if one not in before.lights] == [light]
         assert is_undone_at_once(coupe, before)
 
 
@@ -402,7 +351,7 @@ DRAWN = {
 }
 
 
-def test_the_views_are_drawn_as_they_were() -> None:
+def test_the_views_are_drawn_as_they_were(coupe: Hand) -> None:
     hand = opened(boxed(*LIGHTS))
     hand.pick("fit all", 0.75)
     hand.pick("rescale", 0.05)
@@ -426,6 +375,6 @@ def test_the_views_are_drawn_as_they_were() -> None:
     for _ in range(5):
         hand.pick("rescale", 0.95)
     note("nearer")
-    hand = opened(coupe_scene())
+    hand = coupe
     note("the coupe")
     assert found == DRAWN

@@ -21,13 +21,12 @@ from autocolor.screens.light_and_view.orthographic_views import (
     shown_points,
 )
 from autocolor.testing import vectors
+from tests.autocolor.screens.light_and_view.pointing import VIEWS
 from tests.small import cube, grid
 
 coordinates = st.floats(-1e6, 1e6).map(lambda value: value + 0.0)
 points = st.tuples(coordinates, coordinates, coordinates)
 sides = st.sampled_from(SIDES)
-
-UNIT = OrthographicViews((0.0, 0.0, 0.0), 10.0)
 
 
 @st.composite
@@ -36,16 +35,10 @@ def some_views(draw: st.DrawFn) -> OrthographicViews:
     return OrthographicViews(draw(points), 1.0).zoomed(10.0 ** draw(st.floats(-4, 4)))
 
 
-@st.composite
-def pixels(draw: st.DrawFn, side: ViewSide) -> tuple[int, int]:
-    area = side.area
-    return draw(st.integers(area.left, area.right)), draw(st.integers(area.top, area.bottom))
-
-
 def test_each_view_shows_two_axes_as_on_an_engineering_drawing() -> None:
     for side, right, up in ((TOP, 10, 20), (FRONT, 10, 30), (SIDE, 20, 30)):
         element, line = side.area.middle
-        assert UNIT.position(side, (1, 2, 3)) == (element + right, line - up)
+        assert VIEWS.position(side, (1, 2, 3)) == (element + right, line - up)
 
 
 @given(some_views(), sides, points, points | st.none())
@@ -72,10 +65,11 @@ def test_the_mark_of_a_point_is_at_its_position_or_where_its_arrow_comes_into_th
             assert np.hypot(*arrow) == pytest.approx(mark.ratio * np.hypot(*way), rel=1e-3)
 
 
-@given(st.data())
-def test_a_point_is_placed_to_the_pixel_and_the_third_coordinate_stays(data: st.DataObject) -> None:
-    views, side, point = data.draw(some_views()), data.draw(sides), data.draw(points)
-    element, line = data.draw(pixels(side))
+@given(some_views(), sides, points, st.integers(0, 247), st.integers(0, 200))
+def test_a_point_is_placed_to_the_pixel_and_the_third_coordinate_stays(
+    views: OrthographicViews, side: ViewSide, point: Vector, across: int, down: int
+) -> None:
+    element, line = side.area.left + across, side.area.top + down
     placed = views.placed(side, point, element, line)
     (third,) = {0, 1, 2} - {side.right, side.up}
     assert placed[third] == point[third]
@@ -88,7 +82,7 @@ def test_a_point_is_placed_to_the_pixel_and_the_third_coordinate_stays(data: st.
 
 def test_a_placed_coordinate_has_no_more_decimals_than_tell_the_pixel() -> None:
     middle = TOP.area.middle
-    moved = UNIT.placed(TOP, (0.123456, 0.0, 0.5), round(middle[0] + 40.5), round(middle[1] - 60.5))
+    moved = VIEWS.placed(TOP, (0.123456, 0.0, 0.5), round(middle[0] + 40.5), round(middle[1] - 60.5))
     assert moved == (4.05, 6.05, 0.5)
 
 

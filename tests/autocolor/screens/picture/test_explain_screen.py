@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor.explanation.text import rows_of_text
@@ -33,22 +34,15 @@ def expected(hand: Hand, line: int, element: int) -> object:
     return items + magnifier_items(studio.words, line, element)
 
 
-def test_shift_and_a_click_explain_a_pixel(hand: Hand) -> None:
-    before = hand.scene
-    click_with_shift(hand, ELEMENT + 9, LINE - 5)
+def test_shift_and_a_click_explain_a_pixel_and_pick_no_highlight_there(hand: Hand) -> None:
+    before, (element, line) = hand.scene, hand.handle("highlight of key")
+    click_with_shift(hand, element, line)
     assert hand.viewer.page == "explain"
-    assert shown(hand) == expected(hand, LINE - 5, ELEMENT + 9)
+    assert hand.viewer.board.held is None
+    assert shown(hand) == expected(hand, line, element)
     hand.press("escape")
     assert hand.viewer.page == "picture"
     assert hand.scene is before
-
-
-def test_shift_and_a_click_at_a_highlight_explain_it_and_do_not_pick_it(hand: Hand) -> None:
-    element, line = hand.handle("highlight of key")
-    click_with_shift(hand, element, line)
-    assert hand.viewer.page == "explain"
-    assert hand.viewer.session.pixel == (line, element)
-    assert hand.viewer.board.held is None
 
 
 def test_the_unit_explains_by_a_row_of_the_menu_and_a_click(hand: Hand) -> None:
@@ -64,8 +58,7 @@ def test_the_unit_explains_by_a_row_of_the_menu_and_a_click(hand: Hand) -> None:
     assert hand.viewer.page == "picture"
     hand.open_menu()
     hand.pick("explain a pixel")
-    hand.press("escape")
-    hand.press("escape")
+    hand.press("escape", "escape")
     hand.click(ELEMENT, LINE)
     assert hand.viewer.page == "picture"
 
@@ -95,9 +88,7 @@ def test_arrows_and_a_click_in_the_magnifier_explain_a_neighbor(hand: Hand) -> N
 
 def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
     click_with_shift(hand, 0, 0)
-    for key in ("up", "left"):
-        hand.press(key)
-    assert hand.viewer.session.pixel == (0, 0)
+    hand.press("up", "left")
     # The pixels beside the picture are those at its edge.
     hand.click(MAGNIFIER.left + SIDE // 2, MAGNIFIER.top + SIDE // 2)
     assert hand.viewer.session.pixel == (0, 0)
@@ -105,9 +96,7 @@ def test_a_neighbor_stays_in_the_picture(hand: Hand) -> None:
 
 def test_the_magnifier_shows_the_words_around_the_pixel(hand: Hand) -> None:
     click_with_shift(hand, ELEMENT, LINE)
-    words = hand.viewer.studio.words
-    for down in range(-2, 3):
-        for across in range(-4, 5):
-            top = MAGNIFIER.top + SIDE * (down + 2) + SIDE // 2
-            left = MAGNIFIER.left + SIDE * (across + 4) + SIDE // 2
-            assert hand.display.words[top, left] == words[LINE + down, ELEMENT + across]
+    top, left = MAGNIFIER.top + SIDE // 2, MAGNIFIER.left + SIDE // 2
+    shown = hand.display.words[top : MAGNIFIER.bottom : SIDE, left : MAGNIFIER.right : SIDE]
+    around = hand.viewer.studio.words[LINE - 2 : LINE + 3, ELEMENT - 4 : ELEMENT + 5]
+    assert np.array_equal(shown, around)

@@ -2,8 +2,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from autocolor.screens.picture.history_screen import BEGIN, LIST, MOST_ROWS, StepRow
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.items import CHARACTER, LIGHT_GRAY, WHITE
@@ -60,10 +58,9 @@ def test_a_click_goes_to_a_step_and_one_on_an_undone_step_goes_forward(tmp_path:
     go_to(hand, 3)
     assert hand.scene is scenes[3]
     assert hand.message == "2 steps redone: fill: intensity 0.51 -> 0.53"
-    go_to(hand, 3)
-    assert hand.scene is scenes[3]
-    go_to(hand, 0)
-    assert hand.scene is scenes[0]
+    for step in (3, 0):
+        go_to(hand, step)
+        assert hand.scene is scenes[step]
     assert hand.viewer.page == "history"
     hand.press("Ctrl+Y")
     assert [step for step, row in rows_of(hand).items() if row.is_chosen] == [1]
@@ -74,18 +71,15 @@ def test_a_click_goes_to_a_step_and_one_on_an_undone_step_goes_forward(tmp_path:
     assert rows_of(hand)[2].label.endswith("ambient 0.1 -> 0.4")
 
 
-@pytest.mark.parametrize("steps", [MOST_ROWS - 1, MOST_ROWS])
-def test_more_steps_than_fit_have_older_and_newer_ones(steps: int, tmp_path: Path) -> None:
-    hand = hand_after(steps, tmp_path)
-    assert len(rows_of(hand)) == MOST_ROWS
-    assert steps in rows_of(hand)
-    assert ("older" in hand.labels) == (steps + 1 > MOST_ROWS)
-    assert all(LIST.covers(row.area) for row in rows_of(hand).values())
-
-
 def test_older_and_newer_steps_are_reached_by_rows_and_the_wheel(tmp_path: Path) -> None:
+    # The state that was opened is a row, too.
+    hand = hand_after(MOST_ROWS - 1, tmp_path)
+    assert list(rows_of(hand)) == [*range(MOST_ROWS)]
+    assert "older" not in hand.labels
     steps = 3 * MOST_ROWS
     hand = hand_after(steps, tmp_path)
+    assert len(rows_of(hand)) == MOST_ROWS
+    assert all(LIST.covers(row.area) for row in rows_of(hand).values())
     seen = set(rows_of(hand))
     for _ in range(5):
         hand.pick("older")

@@ -33,21 +33,22 @@ ROWS: dict[str, tuple[float, Callable[[Scene], View]]] = {
 }
 
 
+def present(hand: Hand, label: str) -> str:
+    """The name that a row shows."""
+    row = hand.widget(label)
+    assert isinstance(row, Choice)
+    return row.present
+
+
 def test_every_side_is_in_the_list_of_the_row_of_the_view(hand: Hand) -> None:
     start = hand.scene
     for side in sides_of(start):
         hand.open_menu()
         hand.choose("view", side)
         assert hand.scene.view == seen_from(start, side)
-        row = next(row for row in hand.viewer.board.layout.rows if row.label == "view")
-        assert isinstance(row, Choice)
-        assert row.present == side
-    while hand.viewer.studio.view_back():
-        pass
-    hand.viewer.tell("")
-    row = hand.widget("view")
-    assert isinstance(row, Choice)
-    assert row.present == ""
+        assert present(hand, "view") == side
+    hand.pick("turn", 0.9)
+    assert present(hand, "view") == ""
 
 
 @pytest.mark.parametrize("label", ROWS)
@@ -98,34 +99,45 @@ def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None
 def test_a_view_is_saved_taken_and_removed_as_a_camera(hand: Hand) -> None:
     session, start = hand.viewer.session, hand.scene
 
-    def cameras() -> tuple[list[str], str]:
-        row = hand.widget("camera")
-        assert isinstance(row, Choice)
-        return list(row.names), row.present
-
     hand.pick("save view")
     assert session.message == "view saved: view 1"
-    assert cameras() == (["view 1"], "view 1")
+    assert present(hand, "camera") == "view 1"
     hand.pick("save view", 0.2)
     assert session.message == "this view is saved already: view 1"
     hand.pick("turn", 0.9)
     hand.pick("save view", 0.2)
     hand.pick("turn", 0.9)
-    assert cameras() == (["view 1", "view 2"], "")
+    assert present(hand, "camera") == ""
     turned = hand.scene
     hand.pick("save view", 0.9)
     assert session.message == "only the camera that is shown can be removed; take one from the row camera"
     hand.pick("camera", 0.9)
     assert session.message == "camera: view 1"
-    assert cameras()[1] == "view 1"
+    assert present(hand, "camera") == "view 1"
     assert hand.scene.view == start.view
     hand.press("Alt+Left")
     assert hand.scene.equals(turned)
     hand.pick("camera", 0.02)
-    assert cameras()[1] == "view 2"
+    assert present(hand, "camera") == "view 2"
     hand.pick("save view", 0.9)
     assert session.message == "camera view 2 removed; undo brings it back"
-    assert cameras() == (["view 1"], "")
+    assert [view.name for view in hand.scene.views] == ["view 1"]
+
+
+def test_a_camera_is_named_when_it_is_saved_and_renamed_from_its_list(hand: Hand) -> None:
+    hand.viewer.session.has_keyboard = True
+    hand.pick("save view", 0.25)
+    hand.type("hero")
+    hand.press("return")
+    assert [view.name for view in hand.scene.views] == ["hero"]
+    for number in range(3):
+        hand.viewer.session.edit(hand.scene.with_saved_view(f"view {number}"))
+    hand.open_menu()
+    hand.choose("camera", "hero")
+    hand.type("side")
+    hand.press("return")
+    assert [view.name for view in hand.scene.views] == ["side", "view 0", "view 1", "view 2"]
+    assert hand.message == "camera side"
 
 
 def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
@@ -160,7 +172,7 @@ def test_a_stage_is_a_row_and_its_backdrop_has_two_colors(hand: Hand) -> None:
     assert hand.scene.backdrop_colors == (start.replace(stage="floor").backdrop_colors[0], (18, 52, 86))
     hand.viewer.session.choose_surface("stage")
     with pytest.raises(UsageError, match="the view fills with the object, not with its stage"):
-        edits.rescale_surface(hand.viewer.session)
+        edits.rescale(hand.viewer.session, "stage")
 
 
 def test_highlights_are_marked_while_the_pointer_rests_on_the_object(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from autocolor.screens.picture.split_screen import FIRST, MIDDLE, halves_of
 from autocolor.studio import Studio
 from autocolor.widgets.items import HEIGHT, WHITE
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.ball import ball_scene, hand_before, seen_on
+from tests.autocolor.screens.ball import ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
 from tests.tables import first
 
@@ -82,28 +83,10 @@ def test_the_state_before_is_at_the_left_of_the_line_and_the_present_one_at_the_
             assert np.abs(shown[:, part] - true[:, part])[MARKED.stop :].max() <= off
 
 
-@pytest.mark.parametrize("edit", first(1, EDITS))
-def test_leaving_restores_every_word_and_every_entry(edit: str, tmp_path: Path) -> None:
-    hand = hand_after(edit, tmp_path)
-    hand.move(300, 300)
-    hand.viewer.tell("")
-    before = seen_on(hand)
-    split(hand)
-    hand.drag((320, 200), (250, 210), (100, 230))
-    assert hand.viewer.page == "split"
-    assert seen_on(hand) != before
-    hand.open_menu()
-    hand.turn_to("picture")
-    hand.move(300, 300)
-    hand.viewer.tell("")
-    assert seen_on(hand) == before
-
-
 def test_a_drag_moves_the_line_by_the_words_between_alone(tmp_path: Path) -> None:
     hand = hand_after("light", tmp_path)
     split(hand)
-    hand.move(300, 300)
-    hand.viewer.tell("")
+    colors_on(hand)
     display = hand.display
     scene, written = hand.scene, display.frame_buffer.written
     hand.drag((320, 200), (310, 200))
@@ -150,12 +133,9 @@ def test_a_variant_is_split_as_it_is_compared(tmp_path: Path) -> None:
 def image_of(seed: int, count: int) -> DisplayImage:
     """An image with so many words of random colors."""
     random = np.random.default_rng(seed)
-
-    class Random:
-        words = random.integers(0, count, (40, 60)).astype(np.uint16)
-        entries = random.integers(0, 256, (1024, 3)).astype(np.uint8)
-
-    return Random()  # type: ignore[return-value]
+    words = random.integers(0, count, (40, 60)).astype(np.uint16)
+    entries = random.integers(0, 256, (1024, 3)).astype(np.uint8)
+    return SimpleNamespace(words=words, entries=entries)  # type: ignore[return-value]
 
 
 @given(st.integers(0, 1000), st.integers(1, 1008), st.integers(1, 1008))

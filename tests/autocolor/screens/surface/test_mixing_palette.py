@@ -36,22 +36,6 @@ def test_no_word_is_used_twice_and_the_surface_has_its_own_words_or_their_neighb
 
 
 @every_division
-def test_the_table_has_each_color_in_its_word(ranges: tuple[tuple[str, LevelRange], ...]) -> None:
-    palette = mixing_words(ranges, "body", 12)
-    swatches = np.random.default_rng(1).integers(0, 256, (12, 3)).astype(np.uint8)
-    table = palette.table(np.full((1024, 3), 7, np.uint8), (200, 100, 50), (1, 2, 3), swatches)
-    for words, color in ((palette.light_shades, (200, 100, 50)), (palette.object_shades, (1, 2, 3))):
-        # Shade k is k / 63 of the color, rounded half up.
-        assert table[words].tolist() == [[(2 * part * k + 63) // 126 for part in color] for k in range(64)]
-    for words, colors in ((palette.grays, GRAYS), (palette.hues, HUES), (palette.swatches, swatches)):
-        assert np.array_equal(table[words], colors)
-    assert (np.delete(table, np.concatenate(palette[:5]), axis=0) == 7).all()
-    # The hues go once around in equal steps.
-    thirds = HUES[:: (len(HUES) - 1) // 3].tolist()
-    assert thirds == [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 0, 0]]
-
-
-@every_division
 def test_other_surfaces_are_dim_and_the_lighter_color_never_has_the_darker_gray(
     ranges: tuple[tuple[str, LevelRange], ...],
 ) -> None:

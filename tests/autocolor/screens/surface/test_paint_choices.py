@@ -11,12 +11,12 @@ from autocolor.files.state import recent_colors
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.swatches import COLUMNS, ROWS, swatches
 from autocolor.screens.keys import paste_text
-from autocolor.screens.surface.paint_choices import CELL_ELEMENTS, CELL_LINES, SwatchField
+from autocolor.screens.surface.paint_choices import SwatchField
 from autocolor.screens.surface.painting import change_paint
 from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Choice, Place
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.mixing import ZERO, bar_is_right, line_of, mixing, shades_are_right
+from tests.autocolor.screens.mixing import ZERO, bar_is_right, mixing, shades_are_right
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
 from tests.autocolor.widgets.drawing import draw_items
 from tests.tables import first
@@ -27,38 +27,52 @@ def hand(tmp_path: Path) -> PaintingHand:
     return mixing(boxes_scene(), tmp_path)
 
 
-def swatch_cell(hand: PaintingHand, shade: int, hue: int) -> Area:
-    """The cell of a swatch in the menu, without its grout."""
-    area = hand.widget("paints").area
-    left = area.left + (area.width - ROWS * CELL_ELEMENTS) // 2 + CELL_ELEMENTS * shade
-    top = area.top + CELL_LINES * hue
-    return Area(left, top, left + CELL_ELEMENTS - 2, top + CELL_LINES - 2)
+def paint_place(hand: PaintingHand, number: int) -> Place:
+    """The middle of the cell of a paint in the menu, counted row by row."""
+    field = hand.widget("paints")
+    assert isinstance(field, SwatchField)
+    down, across = divmod(number, field.across)
+    left = field.area.left + (field.area.width - field.across * field.width) // 2
+    middle = left + field.width * across + field.width // 2 - 1
+    return Place(middle, field.area.top + field.height * down + field.height // 2 - 1)
+
+
+def color_of_paint(hand: PaintingHand, number: int) -> Color:
+    """The color that the display shows for a paint."""
+    red, green, blue = hand.display.field()[paint_place(hand, number)[::-1]].tolist()
+    return red, green, blue
+
+
+def swatch_place(hand: PaintingHand, shade: int, hue: int) -> Place:
+    """The middle of the cell of a swatch: a row has the shades of a hue."""
+    return paint_place(hand, ROWS * hue + shade)
 
 
 def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
-    hand.click(*swatch_cell(hand, 4, 3).middle)
+    hand.click(*swatch_place(hand, 4, 3))
     assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
     hand.pick("section.light source")
-    hand.click(*swatch_cell(hand, 0, 19).middle)
+    hand.click(*swatch_place(hand, 0, 19))
     assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
     # A click on the shades chooses, too.
     hand.click(30, 160)
-    hand.drag(swatch_cell(hand, 0, 0).middle, swatch_cell(hand, 1, 2).middle)
+    hand.drag(swatch_place(hand, 0, 0), swatch_place(hand, 1, 2))
     assert hand.paint.object_color == tuple(swatches()[COLUMNS + 2])
     assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
 
 
 def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
+    field = hand.display.field()
     for number, color in enumerate(swatches()):
-        assert (hand.colors(swatch_cell(hand, *divmod(number, COLUMNS))) == color).all()
+        assert (field[swatch_place(hand, *divmod(number, COLUMNS))[::-1]] == color).all()
     assert shades_are_right(hand)
     assert bar_is_right(hand)
 
 
 def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "object, green"))
-    hand.click(ZERO + 100, line_of(hand, "object, green"))
-    hand.click(ZERO + 99, line_of(hand, "object, blue"))
+    hand.click(ZERO + 99, hand.middle("object, green")[1])
+    hand.click(ZERO + 100, hand.middle("object, green")[1])
+    hand.click(ZERO + 99, hand.middle("object, blue")[1])
     hand.pick(" ", 0.1)
     assert recent_colors() == ()
     hand.leave()
@@ -68,12 +82,12 @@ def test_mixed_colors_are_recent_colors_when_the_mixing_ends(hand: PaintingHand)
     # Another surface takes it over.
     hand.pick("surface")
     recent = hand.widget("recent colors").area
-    place = swatch_cell(hand, 0, 0).left + 4, recent.top + 4
-    assert (hand.colors(Area(*place, place[0] + 4, place[1] + 4)) == [176, 100, 32]).all()
+    place = swatch_place(hand, 0, 0).element, recent.top + 4
+    assert (hand.colors(Area(*place, *place)) == [176, 100, 32]).all()
     hand.click(*place)
     assert hand.paint.object_color == (176, 100, 32)
     # Choosing another surface ends the mixing.
-    hand.click(ZERO + 99, line_of(hand, "light source, green"))
+    hand.click(ZERO + 99, hand.middle("light source, green")[1])
     hand.pick("surface")
     assert (255, 99, 255) in recent_colors()
 
@@ -82,8 +96,8 @@ def test_a_mixed_color_of_a_ramp_is_a_recent_color_and_the_others_are_not(hand: 
     change_paint(hand.viewer.session, ramp=["#100", "#200", "#300", "#400"])
     hand.pick("ramp bar", 0.3)
     hand.pick("add color")
-    hand.click(ZERO + 102, line_of(hand, "color 3, red"))
-    hand.click(ZERO + 99, line_of(hand, "color 3, green"))
+    hand.click(ZERO + 102, hand.middle("color 3, red")[1])
+    hand.click(ZERO + 99, hand.middle("color 3, green")[1])
     hand.pick("surface")
     assert recent_colors() == ((102, 99, 0),)
 
@@ -98,22 +112,6 @@ def bring(hand: PaintingHand, paints: Palette) -> None:
     folder = hand.viewer.session.folder
     write_palette(folder / FILE, paints, overwrite=True)
     hand.viewer.on_drop(folder / FILE)
-
-
-def paint_place(hand: PaintingHand, number: int) -> Place:
-    """The middle of the cell of a paint in the menu."""
-    field = hand.widget("paints")
-    assert isinstance(field, SwatchField)
-    down, across = divmod(number, field.across)
-    left = field.area.left + (field.area.width - field.across * field.width) // 2
-    middle = left + field.width * across + field.width // 2 - 1
-    return Place(middle, field.area.top + field.height * down + field.height // 2 - 1)
-
-
-def color_of_paint(hand: PaintingHand, number: int) -> Color:
-    """The color that the display shows for a paint."""
-    red, green, blue = hand.display.field()[paint_place(hand, number)[::-1]].tolist()
-    return red, green, blue
 
 
 @pytest.mark.parametrize("paints", first(1, [FEW, MANY]))
@@ -144,16 +142,9 @@ def test_the_paints_of_a_file_come_before_the_swatches(hand: PaintingHand, paint
 def test_the_name_of_a_paint_is_shown_under_the_pointer_and_when_it_is_taken(hand: PaintingHand) -> None:
     bring(hand, FEW)
     hand.viewer.tell("")
-    shown = []
-    for number in range(4):
+    for number, paint in ((3, "#0e294b"), (2, "Old red, #a52019")):
         hand.move(*paint_place(hand, number))
-        shown.append(hand.viewer.board.messages[0].text)
-    assert shown == [
-        "Signal red, #a52019: click it for the object color",
-        "Teal, #f8f32b: click it for the object color",
-        "Old red, #a52019: click it for the object color",
-        "#0e294b: click it for the object color",
-    ]
+        assert hand.hint == f"{paint}: click it for the object color"
     hand.click(*paint_place(hand, 2))
     assert hand.message == "object: Old red, #a52019"
     assert hand.paint.object_color == (165, 32, 25)
@@ -184,11 +175,12 @@ def test_keys_take_paint_after_paint_although_some_have_one_color(hand: Painting
 def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(hand: PaintingHand) -> None:
     board, yellow = hand.viewer.board, (248, 243, 43)
     for name, color in (("teal", (0, 128, 128)), ("TEAL", yellow), ("navy", (0, 0, 128))):
-        hand.pick("number.object")
+        hand.pick("number.light source")
         board.typing.insert(name)
         hand.press("return")
-        assert hand.paint.object_color == color
+        assert hand.paint.light_color == color
         bring(hand, FEW)
+    hand.click(30, 160)
     paste_text(board, "old red")
     assert hand.paint.object_color == (165, 32, 25)
     hand.leave()
@@ -197,18 +189,17 @@ def test_a_name_that_is_typed_or_pasted_is_a_paint_before_it_is_a_color_of_css(h
 
 
 def test_the_key_of_the_next_color_goes_through_the_paints(hand: PaintingHand) -> None:
-    own = hand.paint.object_color
     bring(hand, FEW)
+    red, teal, blue, own = "Old red, #a52019", "Teal, #f8f32b", "#0e294b", in_digits(hand.paint.object_color)
     messages = []
-    for _ in range(4):
-        hand.press("c")
-        messages.append(hand.message)
-    assert messages == [
-        "object color Old red, #a52019",
-        "object color Teal, #f8f32b",
-        "object color #0e294b",
-        f"object color {in_digits(own)}",
-    ]
+    for key in ("c", "c", "c", "c", "Shift+C", "Shift+C", "Shift+C", "Shift+C"):
+        hand.press(key)
+        messages.append(hand.message.removeprefix("object color "))
+    assert messages == [red, teal, blue, own, blue, teal, red, own]
+    # A color that came from elsewhere is followed by the first.
+    change_paint(hand.viewer.session, object_color="#654321")
+    hand.press("c")
+    assert hand.message == f"object color {own}"
 
 
 def test_paints_that_cannot_be_read_leave_those_before(hand: PaintingHand) -> None:

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -8,15 +7,8 @@ import pytest
 from autocolor import CookTorrance, Surface
 from autocolor.scene.columns import fields_of
 from autocolor.scene.reflection_models import MODELS, START_CURVE, SpecularGrowth
-from autocolor.widgets.bars import Bar
 from tests.autocolor.screens.boxes import hand_at, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
-
-NUMBERS: dict[str, Callable[[Surface], object]] = {
-    "diffuse": lambda surface: surface.reflectance.diffuse,
-    "specular": lambda surface: surface.reflectance.specular,
-    "exponent": lambda surface: vars(surface.reflectance.model).get("exponent"),
-}
 
 BOX = 0.95
 
@@ -30,16 +22,12 @@ def surface_of(hand: Hand, name: str = "low") -> Surface:
     return hand.scene.surfaces[name]
 
 
-@pytest.mark.parametrize("label", NUMBERS)
-def test_a_drag_along_a_number_sets_it_alone_and_is_one_step(hand: Hand, label: str) -> None:
+@pytest.mark.parametrize("column", ["diffuse", "specular"])
+def test_a_drag_along_a_number_sets_it_alone_and_is_one_step(hand: Hand, column: str) -> None:
     before = hand.scene
-    hand.pull(label, 0.2, 0.4)
-    row = hand.widget(label)
-    assert isinstance(row, Bar)
-    assert NUMBERS[label](surface_of(hand)) == row.value
-    start, now = before.surfaces["low"], surface_of(hand)
-    assert [name for name, get in NUMBERS.items() if get(start) != get(now)] == [label]
-    assert surface_of(hand, "high") is before.surfaces["high"]
+    hand.pull(column, 0.2, 0.4)
+    value = vars(hand.widget(column))["value"]
+    assert hand.scene.equals(before.with_surface("low", **{column: value}))
     assert words_are_those_of_the_scene(hand)
     undo(hand)
     assert hand.scene is before
