@@ -35,7 +35,7 @@ def main() -> None:
     side = autocolor.Light("side", (-4.0, -6.0, 4.0), aim=(0.0, 0.0, 0.6), concentration=4)
     view = coupe.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
     coupe = coupe.replace(lights=(side,), view=view, ambient=0.12, exposure={"stage": (0.12, 0.9)}, **SHOWN)
-    studio = open_studio(coupe)
+    studio = open_studio(coupe.replace(stage="floor"))
     studio.light("side", half_spaces={"slant": SLANT})
     sheet.add(studio, "A. A Slanted Half-Space, Sharp", "a")
     studio.light("side", half_spaces={"slant": {"edge_width": SOFT}})

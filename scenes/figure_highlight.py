@@ -43,9 +43,8 @@ def marked(field: Field, line: int, element: int) -> Field:
 def main() -> None:
     """Render once for each object; each panel places the highlight of the one light."""
     sheet = Sheet("highlight")
-    # The light from behind, beside the three others; its flap keeps it off the floor.
-    coupe = read_scene("coupe")
-    coupe = coupe.with_light("back", name="lamp", flaps={"x": None, "z": {"minimum": 0.01}})
+    # The light from behind, beside the three others.
+    coupe = read_scene("coupe").with_light("back", name="lamp")
     pyramid = read_scene("pyramid").replace(ambient=0.2, contrast="floor")
     pyramid = pyramid.with_light("lamp", aim=(0.5, 0.0, 0.9), concentration=4)
     pyramid = pyramid.with_surface("pyramid", specular=0.8, exponent=40)

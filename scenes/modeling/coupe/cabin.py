@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.modeling.coupe.canopy import FLANK, SHIELD, crown
+from scenes.modeling.coupe.canopy import BAND, FLANK, SHIELD, crown
 from scenes.modeling.coupe.curves import Array
 from scenes.modeling.coupe.parts import Names, Parts
 
 THICKNESS = 0.025
-"""Of the lining below the roof and inside the pillars."""
+"""Of the lining below the roof and the hatch."""
 FLOOR = 0.45
 SEAT_Y = 0.37
-BAND = 2
+TINTED = 2
 """Columns of the tinted band of the windshield, with its dark border."""
 
 
@@ -35,7 +35,7 @@ def glazed(places: Array) -> Array:
 def opened(names: Names) -> Names:
     """Return the parts of the canopy's cells, without the panes that are open."""
     left = names.copy()
-    left[: SHIELD - BAND][names[: SHIELD - BAND] == "windshield"] = ""
+    left[: SHIELD - TINTED][names[: SHIELD - TINTED] == "windshield"] = ""
     left[:, 2:FLANK][np.char.startswith(names[:, 2:FLANK], "window")] = ""
     return left
 
@@ -50,9 +50,11 @@ def lining(parts: Parts, points: Array, names: Names) -> Array:
     inner[..., 1] = np.where(points[..., 1] < 1e-9, 0.0, inner[..., 1])
     is_open = names == ""
     lined = np.where(is_open, "", "lining")
-    # Glass and sail begin and end in points. The hatch glass needs no lining.
-    lined[[0, -1]] = lined[names == "hatch_glass"] = ""
-    parts.grid(lined, inner, outward=(0, -0.3, -1))
+    # Glass and sail begin and end in points.
+    lined[[0, -1]] = ""
+    # The rows of the rounded band would cross: its lining is flat.
+    rows = np.delete(np.arange(points.shape[1]), slice(FLANK + 1, FLANK + len(BAND) - 1))
+    parts.grid(lined[:, rows[:-1]], inner[:, rows], outward=(0, -0.3, -1))
     for axis in (0, 1):
         ahead = np.diff(is_open.astype(int), axis=axis)
         for i, j in np.argwhere(ahead != 0):

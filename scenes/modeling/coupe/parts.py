@@ -147,7 +147,11 @@ class Parts:
         normals = computed.vectors[computed.numbers].astype(float)
         for name in self.normals.keys() & set(names):
             places = np.array(nodes)[corners[of_part == name]]
-            normals[of_part == name] = self.normals[name](places)
+            given = self.normals[name](places)
+            # They are on the side from which the polygon is counterclockwise.
+            facing = np.cross(places[:, 2] - places[:, 0], places[:, 3] - places[:, 1])
+            same = (facing * given.sum(axis=1)).sum(axis=1) > 0
+            normals[of_part == name] = np.where(same, 1.0, -1.0)[:, None, None] * given
         unique, rows = np.unique(np.round(normals.reshape(-1, 3), 4) + 0.0, axis=0, return_inverse=True)
         return unique, rows.reshape(-1, 4)
 
