@@ -1,8 +1,8 @@
 """The page in a browser: `python -m benchmarks page` has the milliseconds of script that a change takes.
 
-Sliders of the coupe's page are moved in Debian's Chromium. A change is everything that the script does
-before the browser paints: entries or words, colors of pixels, controls. The clock of a page is precise to
-0.1 ms. Without Chromium and playwright nothing is measured.
+Sliders of the coupe's page are moved in Debian's Chromium, and the coupe is turned. A change is everything
+that the script does before the browser paints: entries or words, colors of pixels, controls. The clock of a
+page is precise to 0.1 ms. Without Chromium and playwright nothing is measured.
 """
 
 from __future__ import annotations
@@ -22,11 +22,12 @@ from benchmarks.targets import MET, MISSED
 CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
 SCENE = Path(__file__).parents[1] / "scenes" / "coupe"
 ROUNDS = 60
+VIEWS = 12
 COLOR, BLEND, STRENGTH = "Green of the object color of body", "Blend of body", "Strength of light key"
 
 
 class Change(NamedTuple):
-    """A slider that is moved on a page of the coupe with a smoothness."""
+    """A slider that is moved on a page of the coupe with a smoothness; a turn if it is empty."""
 
     name: str
     slider: str
@@ -41,12 +42,23 @@ CHANGES = (
     Change("the blend, 1280 x 960", BLEND, 2, 4),
     Change("the strength of a light, 640 x 480", STRENGTH, 1, 4),
     Change("the strength of a light, 1280 x 960", STRENGTH, 2),
+    Change("a turn, 1280 x 960", "", 2, 100),
 )
 MOVED = """async ([label, rounds]) => {
     const slider = document.querySelector(`input[aria-label^="${label}"]`);
     const seconds = [];
     for (let round = 0; round < rounds; round++) {
         await new Promise(requestAnimationFrame);
+        if (!label) {
+            const status = document.querySelector("[role=status]");
+            const shown = new Promise(resolve =>
+                new MutationObserver(resolve).observe(status, {childList: true}));
+            const begun = performance.now();
+            document.querySelector("[aria-label='Turn right']").click();
+            await shown;
+            seconds.push((performance.now() - begun) / 1000);
+            continue;
+        }
         slider.value = slider.max * (0.1 + 0.8 * (round * 0.618 % 1));
         const begun = performance.now();
         slider.dispatchEvent(new Event("input", {bubbles: true}));
@@ -75,7 +87,7 @@ def change_seconds(rounds: int, changes: tuple[Change, ...] = CHANGES) -> dict[s
         for change in changes:
             path = Path(folder) / f"{change.smooth}.html"
             if not path.exists():
-                autocolor.save_page(path, scene, autocolor.render(scene, smooth=change.smooth), lights=True)
+                autocolor.save_page(path, scene, smooth=change.smooth, views=VIEWS, lights=True)
             page = launched.new_page()
             page.goto(path.as_uri())
             page.wait_for_selector(".desk")
@@ -86,12 +98,11 @@ def change_seconds(rounds: int, changes: tuple[Change, ...] = CHANGES) -> dict[s
     return found
 
 
-def page_kilobytes(lights: bool = False) -> float:
+def page_kilobytes(views: int | None, lights: bool) -> float:
     """The size of the page of the coupe, as `autocolor page` writes it."""
-    scene = autocolor.read_scene(SCENE)
     with TemporaryDirectory() as folder:
         path = Path(folder) / "coupe.html"
-        autocolor.save_page(path, scene, autocolor.render(scene, smooth=2), lights=lights)
+        autocolor.save_page(path, autocolor.read_scene(SCENE), views=views, lights=lights)
         return path.stat().st_size / 1000
 
 
@@ -112,7 +123,11 @@ def measure(rounds: int = ROUNDS, quick: bool = False) -> dict[str, Any]:
             for each in changes
             if each.bound is not None
         ],
-        "pages kB": {"coupe": page_kilobytes(), "coupe with lights": page_kilobytes(lights=True)},
+        "pages kB": {
+            f"coupe{turns}{lit}": page_kilobytes(views, bool(lit))
+            for turns, views in (("", None), (f", {VIEWS} views", VIEWS))
+            for lit in ("", ", lights")
+        },
     }
 
 

@@ -76,6 +76,7 @@ PLACES = {
     ("PIL",): {
         ("ramtek_emu.png", False), ("ramtek_emu.films", True), ("ramtek_emu.snapshot", False),
         ("autocolor.batches.outputs", False), ("autocolor.images", False), ("autocolor.scene.kinds", False),
+        ("autocolor.web.page", False),
     },
     ("platformdirs",): {("autocolor.files.state", True)},
     ("vtkmodules",): {

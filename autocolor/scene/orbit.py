@@ -1,4 +1,4 @@
-"""Views of a scene with the eye moved: around its target, closer, beside it, or to a side of the object.
+"""Views of a scene with the eye moved: around the object, closer, beside it, or to a side of the object.
 
 An eye above a stage stays above it. The sides of the object have names.
 """
@@ -10,12 +10,12 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats
+from autocolor.arrays import Floats, underflowing
 from autocolor.checks import Vector
-from autocolor.scene.defaults import default_view, framed, stage_top
+from autocolor.scene.defaults import FILLED, default_view, framed, sphere_around, stage_top
 from autocolor.scene.scene import Scene
 from autocolor.scene.stage import NONE, shape_of
-from autocolor.scene.view import Polar, View
+from autocolor.scene.view import ASPECT, Polar, View
 
 HIGHEST: Final = 85.0
 """Assumed: the largest elevation in degrees; closer to the vertical, a small step would spin the picture."""
@@ -118,6 +118,35 @@ def seen_from(scene: Scene, side: str) -> View:
     # The angle is 0, so that the view is upright, as on a drawing.
     view = scene.view.replace(eye=toward_eye, direction=None, target=(0.0, 0.0, 0.0), angle=0.0)
     return framed(view, scene.object_coordinates)
+
+
+@underflowing
+def around(scene: Scene, count: int, aspect: float = ASPECT) -> tuple[View, ...]:
+    """Views from a number of eyes around the object, all at the least distance from which it always fits.
+
+    The eyes look at the middle of the object. They have the elevation of the scene's view, and begin at its
+    azimuth, at equal angles counterclockwise as seen from above. An eye above a stage stays above it.
+    `aspect` is the width of the picture over its height.
+    """
+    low, high = scene.object_bounds
+    middle, radius = sphere_around(np.array(low), np.array(high))
+    target = _vector(middle)
+    azimuth, elevation, _ = scene.view.polar(target)
+    elevation = min(HIGHEST, max(elevation, 0.0 if lowest_eye(scene) > -math.inf else -HIGHEST))
+    slope = FILLED * scene.view.half_height(aspect)
+    distance, views = radius, []
+    for turn in np.linspace(0, 360, count, endpoint=False).tolist():
+        away = Polar(azimuth + turn, elevation, radius).from_point((0.0, 0.0, 0.0))
+        # A point fits if |x| <= slope * aspect * (depth + distance), and likewise for y.
+        view = scene.view.replace(eye=away, target=(0.0, 0.0, 0.0))
+        x, y, depth = view.axes @ (scene.object_coordinates - middle).T
+        reach = np.maximum(np.abs(x) / (slope * aspect), np.abs(y) / slope) - depth
+        distance = max(distance, float(reach.max()))
+        views.append(view)
+    return tuple(
+        view.replace(eye=_vector(middle + distance / radius * np.array(view.eye)), target=target)
+        for view in views
+    )
 
 
 def target_of(scene: Scene) -> Vector:

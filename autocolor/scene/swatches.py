@@ -50,11 +50,21 @@ SWATCHES: Final = """
 ROWS: Final = 10
 COLUMNS: Final = 20
 
+CAR_PAINTS: Final = (
+    "cream", "champagne", "silver", "gold", "orange", "red", "maroon", "blue", "racing green", "black"
+)  # fmt: skip
+"""The names of the paints of cars: the last column of the field, from the top."""
+
 
 @cache
 def swatches() -> Bytes:
     """The colors of the field, (ROWS * COLUMNS, 3) uint8, read-only, row by row from left to right."""
     return read_only(np.frombuffer(bytes.fromhex(SWATCHES), np.uint8).reshape(-1, 3))
+
+
+def car_paints() -> dict[str, Color]:
+    """The colors of CAR_PAINTS by name."""
+    return dict(zip(CAR_PAINTS, map(tuple, swatches()[COLUMNS - 1 :: COLUMNS].tolist()), strict=True))
 
 
 WHITE: Final = (255, 255, 255)

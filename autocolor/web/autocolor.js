@@ -4,8 +4,9 @@
  *
  * A page holds the picture once, as words. A recoloring computes the entries of one surface and looks up the
  * colors of its pixels again; no word changes. The strength of a light changes words, which are computed from
- * light planes; then no entry changes. A page keeps its own history, and writes its values into the link's
- * fragment. In a notebook the host keeps the history: edits are shown at once and sent to the host.
+ * light planes; then no entry changes. A page that turns holds the words of each view; all views have one
+ * table. A page keeps its own history, and writes its values into the link's fragment. In a notebook the host
+ * keeps the history: edits are shown at once and sent to the host.
  *
  * Keys and values are those of the command line: `surfaces.body.object_color`, `lights.key.intensity`.
  */
@@ -15,20 +16,20 @@
 /** @typedef {[number, number, number]} Color  Red, green and blue, 0 to 255. */
 /** @typedef {{object_color: string, light_color: string, blend: number, light_percentage: number,
  *   ramp: string[] | null}} Paint */
-/** @typedef {{name: string, first: number, levels: number, shades: number, floor: number, pixels: number,
- *   fixed: string, paint: Paint}} Surface */
+/** @typedef {{name: string, first: number, levels: number, shades: number, floor: number, fixed: string,
+ *   paint: Paint}} Surface */
 /** @typedef {{name: string, on: boolean, intensity: number, most: number, units: number[],
  *   plane?: string}} LightRow */
 /**
  * @typedef {{held: string, exposure: string, ambient: number, rows: LightRow[], levels: string[],
  *   dither: boolean}} Lights
  */
-/** @typedef {{name: string, paints?: Record<string, Partial<Paint>>,
- *   lights?: Record<string, Record<string, Value>>}} Variant */
+/** @typedef {{name: string, values: State}} Variant */
 /** @typedef {string | ArrayBufferView} Packed  Bytes, or their base64. */
 /** @typedef {{format: string, name: string, lines: number, elements: number, smooth: number, words: Packed,
  *   entries: Packed, background: string, surfaces: Surface[], notes: string[], variants: Variant[],
  *   legend: null | {line: number, element: number, lines: number, elements: number, words: Packed},
+ *   swatches: Record<string, string>, views: {name: string, words: string}[], line?: string, link?: string,
  *   lights: Lights | null, undo?: number, redo?: number}} Picture */
 /**
  * @typedef {{edit?: (edits: State, sameStep: boolean) => void, undo?: () => void, redo?: () => void}} Options
@@ -45,7 +46,12 @@ const PAINT = /** @type {const} */ (["object_color", "light_color", "blend", "li
 
 /** The bytes of packed values. @param {Packed} packed @returns {Bytes} */
 export function bytesOf(packed) {
-  if (typeof packed === "string") return Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
+  if (typeof packed === "string") {
+    const letters = atob(packed);
+    const bytes = new Uint8Array(letters.length);
+    for (let at = 0; at < bytes.length; at++) bytes[at] = letters.charCodeAt(at);
+    return bytes;
+  }
   return new Uint8Array(/** @type {ArrayBuffer} */ (packed.buffer), packed.byteOffset, packed.byteLength);
 }
 
@@ -338,7 +344,7 @@ export async function relighting({ surfaces, lights, elements }, words, owner) {
     );
     // The words as exported are exact; the planes have 16 bits.
     if (lights.rows.every(({ on, intensity }, row) => strengths[row] === (on ? intensity : 0))) {
-      const changed = words.reduce((count, word, at) => count + (word === exported[at] ? 0 : 1), 0);
+      const changed = countOfChanges(words, exported);
       words.set(exported);
       summed = "";
       return changed;
@@ -401,22 +407,6 @@ export function paintOf(state, name) {
   );
 }
 
-/** The values of a variant. @param {State} first @param {Variant} variant @returns {State} */
-function stateOfVariant(first, variant) {
-  const state = { ...first };
-  for (const [table, rows] of [
-    ["surfaces", variant.paints],
-    ["lights", variant.lights],
-  ]) {
-    for (const [name, fields] of Object.entries(rows ?? {})) {
-      for (const [field, value] of Object.entries(fields)) {
-        if (`${table}.${name}.${field}` in state) state[`${table}.${name}.${field}`] = value;
-      }
-    }
-  }
-  return state;
-}
-
 /** Whether two values are equal. @param {Value} one @param {Value} other */
 function same(one, other) {
   return one === other || JSON.stringify(one) === JSON.stringify(other);
@@ -434,12 +424,8 @@ function alike(one, other) {
 
 /** The name of the first light that keys belong to; empty if none. @param {string[]} keys */
 function lightIn(keys) {
-  return (
-    keys
-      .find((key) => key.startsWith("lights."))
-      ?.slice(7)
-      .replace(/\.[^.]*$/, "") ?? ""
-  );
+  const key = keys.find((each) => each.startsWith("lights."));
+  return key?.slice(7).replace(/\.[^.]*$/, "") ?? "";
 }
 
 /** A value as the command line reads it. @param {Value} value */
@@ -468,21 +454,40 @@ function valueOf(key, text, most) {
 }
 
 /**
- * The values that differ from the first ones, as the fragment of a link.
- * @param {State} state @param {State} first
+ * The keys by their names in links: without the table, and an object color has the name of its surface. A key
+ * has its own name, too, which it keeps in a link if another key has the short one.
+ * @param {State} first @returns {Map<string, string>}
  */
-export function fragmentOf(state, first) {
-  return differing(state, first)
-    .map((key) => `${encodeURIComponent(key)}=${encodeURIComponent(textOf(state[key]).replaceAll("#", ""))}`)
-    .join("&");
+function keysOfLinks(first) {
+  const keys = new Map(Object.keys(first).map((key) => [key, key]));
+  for (const key of [...keys.keys()]) {
+    const name = key.replace(/^(surfaces|lights)\./, "").replace(/\.object_color$/, "");
+    if (name !== "view" && !keys.has(name)) keys.set(name, key);
+  }
+  return keys;
 }
 
 /**
- * The values of a link's fragment, or a sentence about why there are none.
- * @param {string} fragment @param {Picture} picture @param {State} first @returns {State | string}
+ * The values that differ from the first ones, and the number of a view unless it is 0, as a link's fragment.
+ * @param {State} state @param {State} first @param {number} [view]
+ */
+export function fragmentOf(state, first, view = 0) {
+  const names = new Map([...keysOfLinks(first)].map(([name, key]) => [key, name]));
+  const valueIn = (/** @type {string} */ key) => textOf(state[key]).replaceAll("#", "");
+  const pairs = differing(state, first).map((key) => [names.get(key), valueIn(key)]);
+  if (view) pairs.unshift(["view", String(view + 1)]);
+  return pairs.map((pair) => pair.map((text) => encodeURIComponent(text ?? "")).join("=")).join("&");
+}
+
+/**
+ * The values of a link's fragment and the number of its view, or a sentence about why there are none.
+ * @param {string} fragment @param {Picture} picture @param {State} first
+ * @returns {{state: State, view: number} | string}
  */
 export function stateOfFragment(fragment, picture, first) {
   const state = { ...first };
+  const keys = keysOfLinks(first);
+  let view = 0;
   for (const pair of fragment.split("&").filter(Boolean)) {
     const at = pair.indexOf("=");
     let key, text;
@@ -491,6 +496,11 @@ export function stateOfFragment(fragment, picture, first) {
     } catch {
       key = text = "";
     }
+    if (key === "view" && picture.views[Number(text) - 1]) {
+      view = Number(text) - 1;
+      continue;
+    }
+    key = keys.get(key) ?? key;
     const isKey = Object.hasOwn(first, key);
     const row = picture.lights?.rows.find((each) => key === `lights.${each.name}.intensity`);
     const value = isKey ? valueOf(key, text, row?.most ?? 0) : undefined;
@@ -502,7 +512,7 @@ export function stateOfFragment(fragment, picture, first) {
     }
     state[key] = value;
   }
-  return state;
+  return { state, view };
 }
 
 /**
@@ -519,10 +529,7 @@ export function tableOf(state, first, { name, lights }) {
   });
   const cell = (/** @type {string} */ text) =>
     /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-  const rows = [
-    ["name", ...keys],
-    [name, ...keys.map((key) => textOf(state[key]))],
-  ];
+  const rows = [["name", ...keys], [name, ...keys.map((key) => textOf(state[key]))]];
   if (lights && keys.some((key) => key.startsWith("lights.") && !same(state[key], first[key]))) {
     rows[0].push("exposure");
     rows[1].push(lights.exposure);
@@ -546,16 +553,48 @@ function load(table, first, entries) {
 }
 
 /**
+ * The box around the pixels of each surface, which is empty for a surface that is not visible.
+ * @param {Words} words @param {Uint8Array} owner @param {number} count  The surfaces.
+ * @param {number} elements
+ */
+function boxesIn(words, owner, count, elements) {
+  /** @type {() => Box} */
+  const none = () => ({ left: elements, top: Infinity, right: -1, bottom: -1 });
+  const boxes = Array.from({ length: count }, none);
+  for (let line = 0, at = 0; at < words.length; line++) {
+    for (let element = 0; element < elements; ) {
+      const number = owner[words[at]];
+      const begin = element;
+      do {
+        element++;
+        at++;
+      } while (element < elements && owner[words[at]] === number);
+      const box = boxes[number - 1];
+      if (!box) continue;
+      box.left = Math.min(box.left, begin);
+      box.right = Math.max(box.right, element - 1);
+      box.bottom = line;
+      box.top = Math.min(box.top, line);
+    }
+  }
+  return boxes;
+}
+
+/** How many words differ. @param {Words} words @param {Words} others */
+function countOfChanges(words, others) {
+  let count = 0;
+  for (let at = 0; at < words.length; at++) if (words[at] !== others[at]) count++;
+  return count;
+}
+
+/**
  * The canvas of a picture.
  * @param {Picture} picture @param {Words} words @param {Bytes} entries @param {Words | null} legendWords
  */
 function glassOf(picture, words, entries, legendWords) {
   const { lines, elements, smooth, surfaces, legend } = picture;
   const canvas = make("canvas", {
-    width: elements,
-    height: lines,
-    role: "img",
-    "aria-label": `Picture of ${picture.name}`,
+    width: elements, height: lines, role: "img", "aria-label": `Picture of ${picture.name}`,
   });
   const outline = make("canvas", { width: elements, height: lines, class: "outline" });
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
@@ -566,29 +605,20 @@ function glassOf(picture, words, entries, legendWords) {
   const owner = new Uint8Array(ENTRIES);
   surfaces.forEach(({ first, levels }, number) => owner.fill(number + 1, first, first + levels));
   const whole = { left: 0, top: 0, right: elements - 1, bottom: lines - 1 };
-  /** The box around the pixels of each surface. @type {Box[]} */
-  const boxes = surfaces.map(() => ({ left: elements, top: lines, right: 0, bottom: 0 }));
-  for (let at = 0; at < words.length; at++) {
-    const box = boxes[owner[words[at]] - 1];
-    if (!box) continue;
-    const element = at % elements;
-    box.left = Math.min(box.left, element);
-    box.right = Math.max(box.right, element);
-    box.bottom = (at - element) / elements;
-    box.top = Math.min(box.top, box.bottom);
-  }
+  let boxes = boxesIn(words, owner, surfaces.length, elements);
 
   /**
    * Look up the colors of all words in a box. Measured at 1280 x 960: a list of the surface's pixels takes as
    * long and four bytes a pixel.
    */
   function look(/** @type {Box} */ { left, top, right, bottom }) {
+    const shown = words;
     for (let line = top; line <= bottom; line++) {
       const end = line * elements + right;
-      for (let at = line * elements + left; at <= end; at++) pixels[at] = table[words[at]];
+      for (let at = line * elements + left; at <= end; at++) pixels[at] = table[shown[at]];
     }
     drawLegend();
-    context.putImageData(image, 0, 0, left, top, right - left + 1, bottom - top + 1);
+    if (left <= right) context.putImageData(image, 0, 0, left, top, right - left + 1, bottom - top + 1);
   }
 
   function drawLegend() {
@@ -610,10 +640,20 @@ function glassOf(picture, words, entries, legendWords) {
     /** The colors of the entries, 255, blue, green and red from the highest byte down. */
     table,
     /** The words; whoever writes them calls `look`. */
-    words,
+    get words() {
+      return words;
+    },
     owner,
     whole,
     look,
+    /** Show the words of another view; returns how many differ. */
+    turn(/** @type {Words} */ next) {
+      const changed = countOfChanges(words, next);
+      words = next;
+      boxes = boxesIn(words, owner, surfaces.length, elements);
+      look(whole);
+      return changed;
+    },
     /** Rewrite the entries of a surface. */
     rewrite(/** @type {number} */ number, /** @type {Bytes} */ colors) {
       load(table, surfaces[number].first, colors);
@@ -628,13 +668,8 @@ function glassOf(picture, words, entries, legendWords) {
       const other = (/** @type {number} */ at) => owner[words[at]] !== number + 1;
       for (let at = away * elements; at < words.length - away * elements; at++) {
         if (other(at)) continue;
-        if (
-          other(at - away) ||
-          other(at + away) ||
-          other(at - away * elements) ||
-          other(at + away * elements)
-        )
-          dots[at] = 0xffffffff;
+        const down = away * elements;
+        if (other(at - away) || other(at + away) || other(at - down) || other(at + down)) dots[at] = 0xffffffff;
       }
       drawPixels(outline, dots);
     },
@@ -677,6 +712,8 @@ function icon(path) {
 const UNDO = "M8 5 4 9l4 4M4 9h10a5 5 0 0 1 0 10H9";
 const REDO = "M16 5l4 4-4 4M20 9H10a5 5 0 0 0 0 10h5";
 const COMPARE = "M12 3v18M9 6H4v12h5M15 6h5v12h-5";
+const LEFT = "M15 5l-7 7 7 7";
+const RIGHT = "M9 5l7 7-7 7";
 
 /**
  * What the parts of the interface share.
@@ -687,6 +724,7 @@ const COMPARE = "M12 3v18M9 6H4v12h5M15 6h5v12h-5";
  * @property {State} first  The values as exported.
  * @property {State} state
  * @property {number} chosen  The number of the chosen surface, from 0.
+ * @property {number} view  The number of the view that is shown, from 0.
  * @property {Array<() => void>} syncs  What shows the values in the controls.
  * @property {(edits: State, gesture?: string) => void} edit  Edits of the same gesture are one step.
  * @property {() => void} rest  The end of a gesture.
@@ -711,10 +749,7 @@ export async function mount(root, picture, options = {}) {
     update({ words, entries, picture: changed }, keys = []) {
       queue = queue.then(async () => {
         picture = {
-          ...picture,
-          ...changed,
-          words: words ?? picture.words,
-          entries: entries ?? picture.entries,
+          ...picture, ...changed, words: words ?? picture.words, entries: entries ?? picture.entries,
         };
         if (await built.update(picture, keys)) return;
         built.destroy();
@@ -736,17 +771,8 @@ export async function mount(root, picture, options = {}) {
 /** The parts of a picture that a new interface is built for. @param {Picture} picture */
 function structureOf({ lines, elements, smooth, surfaces, legend, lights, variants, notes }) {
   const rows = surfaces.map(({ name, first, levels, fixed }) => [name, first, levels, fixed]);
-  return JSON.stringify([
-    lines,
-    elements,
-    smooth,
-    rows,
-    legend,
-    lights?.held,
-    lights?.rows.map((row) => row.name),
-    variants,
-    notes,
-  ]);
+  const names = lights?.rows.map((row) => row.name);
+  return JSON.stringify([lines, elements, smooth, rows, legend, lights?.held, names, variants, notes]);
 }
 
 /**
@@ -757,20 +783,21 @@ async function build(root, picture, options) {
   const hosted = options.edit !== undefined;
   root.classList.add("autocolor");
   root.classList.toggle("page", !hosted);
+  root.classList.toggle("embed", !hosted && new URLSearchParams(location.search).has("embed"));
   const { lines, elements } = picture;
   const words = await unpackWords(picture.words, lines, elements);
   const before = words.slice();
+  /** The words of the views that are inflated. @type {Words[]} */
+  const rasters = [words];
+  const { views } = picture;
   const entries = await entriesIn(picture);
   const key = picture.legend;
   const legend = key && (await unpackWords(key.words, key.lines, key.elements));
   const glass = glassOf(picture, words, entries, legend);
   const relight = await relighting(picture, words, glass.owner);
   const first = stateOf(picture);
-  const status = make(
-    "p",
-    { class: "status", role: "status" },
-    "Choose a surface in the picture, and mix its colors.",
-  );
+  const hint = `${views.length ? "Drag the picture to turn it. " : ""}Click a surface, and choose its paint.`;
+  const status = make("p", { class: "status", role: "status" }, hint);
 
   /** @type {State[]} */
   let steps = [first];
@@ -785,10 +812,8 @@ async function build(root, picture, options) {
     glass,
     first,
     state: first,
-    chosen: Math.max(
-      0,
-      picture.surfaces.findIndex((surface) => !surface.fixed),
-    ),
+    chosen: Math.max(0, picture.surfaces.findIndex((surface) => !surface.fixed)),
+    view: 0,
     syncs: [],
     say(text) {
       if (status.textContent !== text) status.textContent = text;
@@ -844,8 +869,8 @@ async function build(root, picture, options) {
     const keys = differing(next, desk.state);
     desk.state = next;
     const light = lightIn(keys);
-    if (light && relight) {
-      const changed = relight(next, light);
+    const changed = light && relight ? relight(next, light) : 0;
+    if (light && relight && desk.view === 0) {
       glass.look(glass.whole);
       desk.say(`${COUNT.format(changed)} words rewritten, no entry of the table: light is in the words.`);
     }
@@ -873,15 +898,55 @@ async function build(root, picture, options) {
   }
 
   function writeFragment() {
-    const fragment = fragmentOf(desk.state, first);
+    const fragment = fragmentOf(desk.state, first, desk.view);
     if (location.hash.slice(1) === fragment) return;
     history.replaceState(history.state, "", fragment ? `#${fragment}` : location.pathname + location.search);
   }
 
   function readFragment() {
-    const state = stateOfFragment(location.hash.slice(1), picture, first);
-    if (typeof state === "string") desk.say(state);
-    else desk.edit(state);
+    const read = stateOfFragment(location.hash.slice(1), picture, first);
+    if (typeof read === "string") return desk.say(read);
+    desk.edit(read.state);
+    turn(read.view);
+  }
+
+  // A page that turns: other views have other words, and the same table.
+
+  /** The words of a view. @param {number} view */
+  async function wordsOf(view) {
+    return (rasters[view] ??= await unpackWords(views[view].words, lines, elements));
+  }
+
+  /** The view that was asked for last. */
+  let asked = 0;
+
+  /** Show a view; after the last comes the first again. @param {number} number */
+  async function turn(number) {
+    const view = ((number % views.length) + views.length) % views.length || 0;
+    if (view === asked) return;
+    asked = view;
+    const next = await wordsOf(view);
+    if (view !== asked) return;
+    desk.view = view;
+    const changed = glass.turn(next);
+    old?.turn(view ? next : before);
+    point(-1);
+    const { name } = views[view];
+    desk.say(`View ${name}: ${COUNT.format(changed)} words rewritten, no entry of the table.`);
+    sync();
+    if (!from?.isDrag) writeFragment();
+  }
+
+  /** Inflate another view, the nearest first, whenever there is nothing else to do. */
+  function inflate() {
+    const half = views.length / 2;
+    const turns = (/** @type {number} */ view) => (view - desk.view + 3 * half) % (2 * half);
+    const away = (/** @type {number} */ view) => Math.abs(turns(view) - half);
+    const left = [...views.keys()].filter((view) => !rasters[view]);
+    const [view] = left.sort((one, other) => away(one) - away(other));
+    if (view === undefined || life.signal.aborted) return;
+    const idle = globalThis.requestIdleCallback ?? setTimeout;
+    idle(() => wordsOf(view).then(inflate));
   }
 
   // The picture: point at a surface to see its name and outline, click to choose it.
@@ -897,46 +962,69 @@ async function build(root, picture, options) {
     label.textContent = number < 0 ? "" : picture.surfaces[number].name;
     screen.classList.toggle("pointing", number >= 0);
   }
-  /**
-   * Call a function with the surface under the pointer.
-   * @param {(number: number, event: PointerEvent) => void} call
-   */
-  function withSurface(call) {
-    return (/** @type {any} */ event) => {
-      const box = glass.canvas.getBoundingClientRect();
-      const [line, element] = [event.clientY - box.top, event.clientX - box.left].map((each) =>
-        Math.floor((each * elements) / box.width),
-      );
-      call((glass.owner[words[line * elements + element]] ?? 0) - 1, event);
-    };
+  /** The number of the surface under the pointer. @param {MouseEvent} event */
+  function surfaceAt(event) {
+    const box = glass.canvas.getBoundingClientRect();
+    const [line, element] = [event.clientY - box.top, event.clientX - box.left].map((each) =>
+      Math.floor((each * elements) / box.width),
+    );
+    return (glass.owner[glass.words[line * elements + element]] ?? 0) - 1;
   }
-  glass.canvas.addEventListener(
-    "pointermove",
-    withSurface((number, event) => event.pointerType === "mouse" && number !== pointed && point(number)),
-  );
-  glass.canvas.addEventListener("pointerleave", () => point(-1));
-  glass.canvas.addEventListener(
-    "click",
-    withSurface((number) => number >= 0 && desk.choose(number)),
-  );
+
+  // Drag it sideways to turn it: the near side follows the pointer, a whole turn across the picture.
+  /** Where a drag began, until it ends. @type {{x: number, view: number, isDrag: boolean} | null} */
+  let from = null;
+  let dragged = false;
+  const release = () => {
+    dragged = from?.isDrag ?? false;
+    from = null;
+    if (dragged) writeFragment();
+  };
+  const listeners = {
+    pointerdown(/** @type {PointerEvent} */ { isPrimary, button, clientX }) {
+      dragged = false;
+      if (isPrimary && button === 0 && views.length) from = { x: clientX, view: asked, isDrag: false };
+    },
+    pointermove(/** @type {PointerEvent} */ event) {
+      if (from && event.buttons) {
+        const share = (event.clientX - from.x) / glass.canvas.clientWidth;
+        if (!from.isDrag && Math.abs(event.clientX - from.x) > 6) {
+          from.isDrag = true;
+          glass.canvas.setPointerCapture(event.pointerId);
+        }
+        if (from.isDrag) turn(from.view - Math.round(share * views.length));
+      } else if (event.pointerType === "mouse" && surfaceAt(event) !== pointed) point(surfaceAt(event));
+    },
+    pointerup: release,
+    pointercancel: release,
+    pointerleave: () => point(-1),
+    click(/** @type {PointerEvent} */ event) {
+      if (!dragged && surfaceAt(event) >= 0) desk.choose(surfaceAt(event));
+    },
+  };
+  for (const [name, listener] of Object.entries(listeners))
+    glass.canvas.addEventListener(name, /** @type {EventListener} */ (listener));
+  if (views.length) {
+    screen.classList.add("turning");
+    screen.append(
+      square("Turn left", LEFT, () => turn(asked - 1), { class: "square turn" }),
+      square("Turn right", RIGHT, () => turn(asked + 1), { class: "square turn right" }),
+    );
+  }
 
   const counts = () =>
     hosted ? [desk.picture.undo ?? 0, desk.picture.redo ?? 0] : [at, steps.length - 1 - at];
-  const compare = comparison(screen, () => glassOf(picture, before, entries, legend).canvas);
+  /** The picture as exported, once it was compared. @type {ReturnType<typeof glassOf> | null} */
+  let old = null;
+  const compare = comparison(screen, () => {
+    old = glassOf(picture, desk.view ? glass.words : before, entries, legend);
+    return old.canvas;
+  });
   const notes = div("notes", ...picture.notes.map((note) => make("p", {}, note)));
-  const head = div(
-    "head",
-    ...(hosted ? [] : [make("h1", {}, picture.name)]),
-    toolbar(desk, step, counts, compare),
-  );
-  const under = div("under", wholeTable(desk), status, ...variantStrip(desk, relight));
+  const head = div("head", ...(hosted ? [] : [title(desk)]), toolbar(desk, step, counts, compare));
+  const under = div("under", paints(desk), status, ...variantStrip(desk, relight, words), wholeTable(desk));
   const panel = div(
-    "panel",
-    surfaceList(desk),
-    paintPanel(desk),
-    ...lightRows(desk),
-    notes,
-    sharing(desk, hosted),
+    "panel", surfaceList(desk), paintPanel(desk), ...lightRows(desk), notes, sharing(desk, hosted),
   );
   root.replaceChildren(
     make(hosted ? "div" : "main", { class: "desk" }, head, div("stage", screen), under, panel),
@@ -947,28 +1035,26 @@ async function build(root, picture, options) {
   const keys = hosted ? root : document;
   const life = new AbortController();
   const onKey = (/** @type {Event} */ event) => {
-    const {
-      key: name,
-      ctrlKey,
-      metaKey,
-      shiftKey,
-      altKey,
-      type,
-      target,
-    } = /** @type {KeyboardEvent} */ (event);
-    if (type === "keyup") {
+    const press = /** @type {KeyboardEvent} */ (event);
+    const { key: name, shiftKey, target } = press;
+    const isCommand = press.ctrlKey || press.metaKey;
+    if (press.type === "keyup") {
       keyHeld = false;
       if (gesture) desk.rest();
       return;
     }
     const kind = target instanceof HTMLInputElement ? target.type : "";
+    if (views.length && !kind && !isCommand && !press.altKey && /^Arrow(Left|Right)$/.test(name)) {
+      press.preventDefault();
+      turn(asked + (name === "ArrowLeft" ? -1 : 1));
+    }
     keyHeld = kind === "range" && /^(Arrow|Page|Home|End)/.test(name);
     // In a text, these keys undo what was typed.
     const inText = kind === "text" || kind === "number";
     const letter = name.toLowerCase();
-    if (!(ctrlKey || metaKey) || altKey || inText || !(letter === "z" || letter === "y")) return;
-    event.preventDefault();
-    event.stopPropagation();
+    if (!isCommand || press.altKey || inText || !(letter === "z" || letter === "y")) return;
+    press.preventDefault();
+    press.stopPropagation();
     step(letter === "y" || shiftKey ? 1 : -1);
   };
   const mortal = { signal: life.signal };
@@ -979,6 +1065,7 @@ async function build(root, picture, options) {
     addEventListener("hashchange", readFragment, mortal);
     if (location.hash.length > 1) readFragment();
   }
+  inflate();
 
   return {
     /**
@@ -1020,6 +1107,60 @@ async function build(root, picture, options) {
   };
 }
 
+/** A button with an icon. @param {string} label @param {string} path @param {() => unknown} onclick
+ * @param {Record<string, unknown>} [more] */
+function square(label, path, onclick, more) {
+  return make("button", { class: "square", "aria-label": label, onclick, ...more }, icon(path));
+}
+
+/** The name of the picture, and what a paint changes. @param {Desk} desk */
+function title(desk) {
+  const { name, line = "", link } = desk.picture;
+  const home = link && make("a", { href: link, target: "_blank", rel: "noopener" }, name);
+  const text = make("p");
+  desk.syncs.push(() => {
+    const { levels = 0, fixed = true } = desk.picture.surfaces[desk.chosen] ?? {};
+    text.textContent = fixed ? `${line.split(";")[0]}.` : line.replace("{}", COUNT.format(levels));
+  });
+  return div("title", make("h1", {}, home || name), text);
+}
+
+/** Named paints for the chosen surface, and a random paint. @param {Desk} desk */
+function paints(desk) {
+  const group = make("div", { class: "paints", role: "group" });
+  const chosen = () => desk.picture.surfaces[desk.chosen] ?? { name: "", fixed: "none" };
+  const key = (/** @type {string} */ field) => `surfaces.${chosen().name}.${field}`;
+  const recolor = (/** @type {Partial<Paint>} */ paint) =>
+    desk.edit(Object.fromEntries(Object.entries(paint).map(([field, value]) => [key(field), value])));
+  const buttons = Object.entries(desk.picture.swatches).map(([name, color]) => {
+    const ball = make("span", { class: "ball" });
+    ball.style.background = `radial-gradient(circle at 36% 30%, #fff, ${color} 45%)`;
+    const onclick = () => recolor({ object_color: color, ramp: null });
+    const button = make("button", { onclick }, ball, make("span", {}, name));
+    desk.syncs.push(() => {
+      const isPaint = desk.state[key("ramp")] === null && desk.state[key("object_color")] === color;
+      button.ariaPressed = String(isPaint);
+    });
+    return button;
+  });
+  const random = (least = 0, most = 0) => least + Math.random() * (most - least);
+  const surprise = () => {
+    const hue = random(0, 360);
+    recolor({
+      ramp: null,
+      object_color: cssColor(`hsl(${hue} ${random(30, 95)}% ${random(15, 60)}%)`),
+      light_color: cssColor(`hsl(${hue + random(-90, 90)} ${random(20, 100)}% ${random(80, 95)}%)`),
+      blend: Math.round(random(0, 65)) / 100,
+    });
+  };
+  group.append(...buttons, make("button", { class: "surprise", onclick: surprise }, "Surprise me"));
+  desk.syncs.push(() => {
+    group.hidden = chosen().fixed !== "";
+    group.ariaLabel = `Paints for ${chosen().name}`;
+  });
+  return group;
+}
+
 /** The buttons above the picture. @param {Desk} desk @param {(by: number) => void} step
  * @param {() => number[]} counts  The steps to undo and to redo. @param {HTMLElement} compare */
 function toolbar(desk, step, counts, compare) {
@@ -1027,16 +1168,7 @@ function toolbar(desk, step, counts, compare) {
     ["Undo", "Ctrl+Z", UNDO],
     ["Redo", "Ctrl+Y", REDO],
   ].map(([label, keys, path], which) =>
-    make(
-      "button",
-      {
-        class: "square",
-        "aria-label": label,
-        title: `${label} (${keys})`,
-        onclick: () => step(2 * which - 1),
-      },
-      icon(path),
-    ),
+    square(label, path, () => step(2 * which - 1), { title: `${label} (${keys})` }),
   );
   const reset = make("button", { onclick: () => desk.edit(changesTo(desk, desk.first)) }, "Reset");
   desk.syncs.push(() => {
@@ -1059,36 +1191,23 @@ function changesTo(desk, state) {
 function comparison(screen, drawBefore) {
   /** @type {HTMLElement[]} */
   let shown = [];
-  const button = make(
-    "button",
-    {
-      "aria-pressed": "false",
-      title: "Show the picture as it was, left of a line",
-      onclick() {
-        const isOn = shown.length === 0;
-        button.ariaPressed = String(isOn);
-        shown.forEach((each) => each.remove());
-        shown = isOn ? split() : [];
-        screen.append(...shown);
-      },
-    },
-    icon(COMPARE),
-    "Before",
-  );
+  const onclick = () => {
+    const isOn = shown.length === 0;
+    button.ariaPressed = String(isOn);
+    shown.forEach((each) => each.remove());
+    shown = isOn ? split() : [];
+    screen.append(...shown);
+  };
+  const attributes = { "aria-pressed": "false", title: "Show the picture as it was, left of a line", onclick };
+  const button = make("button", attributes, icon(COMPARE), "Before");
   function split() {
     const before = drawBefore();
     before.className = "before";
     before.ariaHidden = "true";
     const move = () => screen.style.setProperty("--split", `${line.value}%`);
     const line = make("input", {
-      type: "range",
-      class: "split",
-      min: 0,
-      max: 100,
-      step: 0.5,
-      value: 50,
-      "aria-label": "Line between before and after",
-      oninput: move,
+      type: "range", class: "split", min: 0, max: 100, step: 0.5, value: 50,
+      "aria-label": "Line between before and after", oninput: move,
     });
     move();
     return [before, make("span", { class: "line" }), line];
@@ -1144,13 +1263,14 @@ function paintPanel(desk) {
     if (needed !== built) {
       built = needed;
       syncs = [];
-      const title = make("h2", {}, make("span", {}, name), make("small", {}, rangeText(first, levels)));
+      const range = make("small", {}, `words ${first} to ${first + levels - 1}`);
+      const heading = make("h2", {}, make("span", {}, name), range);
       const controls = fixed
         ? [strip(desk, syncs), make("p", { class: "fixed" }, fixed)]
         : isRamp
           ? ramp()
           : twoColors();
-      panel.replaceChildren(title, ...controls);
+      panel.replaceChildren(heading, ...controls);
     }
     syncs.forEach((each) => each());
   });
@@ -1166,11 +1286,7 @@ function paintPanel(desk) {
       });
     return [
       strip(desk, syncs),
-      make(
-        "p",
-        { class: "fixed" },
-        `A ramp of ${colors.length} colors, from the lowest level to the highest.`,
-      ),
+      make("p", { class: "fixed" }, `A ramp of ${colors.length} colors, from the lowest level up.`),
       make("button", { onclick: replace }, "Use two colors instead"),
     ];
   }
@@ -1178,10 +1294,7 @@ function paintPanel(desk) {
   function twoColors() {
     const { name } = desk.picture.surfaces[desk.chosen];
     const key = (/** @type {string} */ each) => `surfaces.${name}.${each}`;
-    const tabs = [
-      ["object_color", "Object color"],
-      ["light_color", "Light color"],
-    ].map(([each, label]) => {
+    const tabs = [["object_color", "Object color"], ["light_color", "Light color"]].map(([each, label]) => {
       const radio = make("input", {
         type: "radio",
         name: `${desk.id}-color`,
@@ -1194,18 +1307,12 @@ function paintPanel(desk) {
       return make("label", {}, radio, swatch, label);
     });
     const blend = slider(desk, syncs, {
-      label: "Blend",
-      title: `Blend of ${name}: where the light color begins`,
-      max: 1,
-      step: 0.01,
+      label: "Blend", title: `Blend of ${name}: where the light color begins`, max: 1, step: 0.01,
       key: key("blend"),
     });
     const percentage = slider(desk, syncs, {
-      label: "Light %",
-      title: `Percent of the light color at the highest level of ${name}`,
-      max: 100,
-      step: 1,
-      key: key("light_percentage"),
+      label: "Light %", title: `Percent of the light color at the highest level of ${name}`, max: 100,
+      step: 1, key: key("light_percentage"),
     });
     blend.firstElementChild?.nextElementSibling?.before(strip(desk, syncs));
     blend.classList.add("blend");
@@ -1222,11 +1329,6 @@ function paintPanel(desk) {
     /** @type {HTMLElement | null} */ (panel.querySelector(`[value="${each}"]`))?.focus();
   }
   return panel;
-}
-
-/** The words of a range, as text. @param {number} first @param {number} levels */
-function rangeText(first, levels) {
-  return `words ${first} to ${first + levels - 1}`;
 }
 
 /**
@@ -1254,33 +1356,15 @@ function drawPixels(canvas, pixels) {
  * @param {{label: string, title: string, max: number, step: number, key?: string, value?: () => number,
  *   edits?: (value: number) => State, track?: () => string}} spec
  */
-function slider(
-  desk,
-  syncs,
-  {
-    label,
-    title,
-    max,
-    step,
-    key = "",
-    value = () => Number(desk.state[key]),
-    edits = (each) => ({ [key]: each }),
-    track,
-  },
-) {
+function slider(desk, syncs, { label, title, max, step, key = "", track, ...spec }) {
+  const { value = () => Number(desk.state[key]), edits = (each) => ({ [key]: each }) } = spec;
   const take = (/** @type {Event} */ event) => {
     const text = /** @type {HTMLInputElement} */ (event.target).value;
     const number = Math.min(Math.max(Number(text), 0), max);
     if (text !== "" && Number.isFinite(number)) desk.edit(edits(number), title);
   };
   const range = make("input", {
-    type: "range",
-    min: 0,
-    max,
-    step,
-    "aria-label": title,
-    title,
-    oninput: take,
+    type: "range", min: 0, max, step, "aria-label": title, title, oninput: take,
   });
   const digits = make("input", {
     type: "number",
@@ -1321,14 +1405,17 @@ function mixer(desk, syncs, key, what) {
     spellcheck: "false",
     autocomplete: "off",
     "aria-label": `The ${what} as #rrggbb or a name of CSS`,
-    onchange() {
-      const digits = cssColor(text.value);
-      text.toggleAttribute("aria-invalid", !digits);
-      if (digits) desk.edit({ [key]: digits });
-      else desk.say(`A color must be “#rrggbb”, or a name such as “navy”, not “${text.value.slice(0, 40)}”.`);
-      if (digits) text.value = digits;
-    },
+    onchange: take,
+    // JupyterLab takes Enter for itself, and then nothing changes.
+    onkeydown: (/** @type {KeyboardEvent} */ press) => press.key === "Enter" && take(),
   });
+  function take() {
+    const digits = cssColor(text.value);
+    text.toggleAttribute("aria-invalid", !digits);
+    if (digits) desk.edit({ [key]: digits });
+    else desk.say(`A color must be “#rrggbb”, or a name such as “navy”, not “${text.value.slice(0, 40)}”.`);
+    if (digits) text.value = digits;
+  }
   syncs.push(() => {
     const digits = String(desk.state[key]);
     picker.value = digits;
@@ -1362,7 +1449,10 @@ function mixer(desk, syncs, key, what) {
   return [div("mixed", picker, text), div("bars", ...parts, white)];
 }
 
-/** The switches and strengths of the lights, if any. @param {Desk} desk */
+/**
+ * The switches and strengths of the lights, if any. They rest in other views than the first.
+ * @param {Desk} desk
+ */
 function lightRows(desk) {
   const lights = desk.picture.lights;
   if (!lights) return [];
@@ -1376,53 +1466,42 @@ function lightRows(desk) {
     });
     desk.syncs.push(() => (toggle.checked = desk.state[key] === true));
     const strength = slider(desk, desk.syncs, {
-      label: "",
-      title: `Strength of light ${name}`,
-      max: most,
-      step: most / 200,
+      label: "", title: `Strength of light ${name}`, max: most, step: most / 200,
       key: `lights.${name}.intensity`,
     });
     return div("light", make("label", {}, toggle, make("span", {}, name)), strength);
   });
-  return [
-    make(
-      "section",
-      { class: "lights" },
-      make("h2", {}, "Lights"),
-      ...rows,
-      make("p", { class: "fixed" }, lights.held),
-    ),
-  ];
+  const box = make("fieldset", {}, ...rows);
+  const why = make("p", { class: "fixed" });
+  desk.syncs.push(() => {
+    box.disabled = desk.view > 0;
+    why.textContent = desk.view > 0 ? RESTING : lights.held;
+  });
+  return [make("section", { class: "lights" }, make("h2", {}, "Lights"), box, why)];
 }
 
-/** The whole lookup table, with the range of the chosen surface. @param {Desk} desk */
+const RESTING = "The lights rest in this view: the page has their planes for the first view only.";
+
+/** The whole lookup table, with the range of the chosen surface, behind a fold. @param {Desk} desk */
 function wholeTable(desk) {
   const canvas = make("canvas", { width: ENTRIES, height: 1 });
   const mark = make("span", { class: "mark" });
-  const text = make("span", {});
   desk.syncs.push(() => {
     drawPixels(canvas, desk.glass.table);
-    const { name, first, levels } = desk.picture.surfaces[desk.chosen] ?? { name: "", first: 0, levels: 0 };
+    const { first, levels } = desk.picture.surfaces[desk.chosen] ?? { first: 0, levels: 0 };
     mark.style.left = `${(100 * first) / ENTRIES}%`;
     mark.style.width = `${(100 * levels) / ENTRIES}%`;
-    text.textContent = name && `${rangeText(first, levels)} are ${name}`;
   });
-  canvas.addEventListener("click", ({ offsetX }) => {
-    const number = desk.glass.owner[Math.floor((offsetX / canvas.clientWidth) * ENTRIES)] - 1;
-    if (number >= 0) desk.choose(number);
-  });
-  return div(
-    "table",
-    div("entries", canvas, mark),
-    make("p", {}, make("span", {}, "Lookup table, 1024 entries"), text),
-  );
+  const summary = make("summary", {}, "Lookup table, 1,024 entries");
+  return make("details", { class: "table" }, summary, div("entries", canvas, mark));
 }
 
 /**
  * The pictures of the variants, which are drawn when they are scrolled into view. To choose one is one step.
  * @param {Desk} desk @param {((state: State, name: string) => number) | null} relight
+ * @param {Words} words  Those of the first view.
  */
-function variantStrip(desk, relight) {
+function variantStrip(desk, relight, words) {
   const { picture, first } = desk;
   if (picture.variants.length === 0) return [];
   const draw = new Map();
@@ -1433,22 +1512,18 @@ function variantStrip(desk, relight) {
       draw.get(target)();
     }
   });
-  const buttons = [{ name: "As exported" }, ...picture.variants].map((variant) => {
-    const state = stateOfVariant(first, variant);
+  const buttons = [{ name: "As exported", values: {} }, ...picture.variants].map(({ name, values }) => {
+    const state = { ...first, ...values };
     const canvas = make("canvas");
     draw.set(canvas, () => {
       const light = lightIn(differing(state, desk.state));
       if (light) relight?.(state, light);
-      drawThumbnail(canvas, desk, state);
+      drawThumbnail(canvas, desk, state, words);
       if (light) relight?.(desk.state, light);
     });
     observer.observe(canvas);
-    const button = make(
-      "button",
-      { onclick: () => desk.edit(changesTo(desk, state)) },
-      canvas,
-      make("span", {}, variant.name),
-    );
+    const onclick = () => desk.edit(changesTo(desk, state));
+    const button = make("button", { onclick }, canvas, make("span", {}, name));
     desk.syncs.push(() => (button.ariaPressed = String(alike(state, desk.state))));
     return button;
   });
@@ -1459,9 +1534,9 @@ const THUMBNAIL = 208;
 
 /**
  * Draw some of the picture's words in other colors.
- * @param {HTMLCanvasElement} canvas @param {Desk} desk @param {State} state
+ * @param {HTMLCanvasElement} canvas @param {Desk} desk @param {State} state @param {Words} words
  */
-function drawThumbnail(canvas, { picture, glass }, state) {
+function drawThumbnail(canvas, { picture, glass }, state, words) {
   const { lines, elements, surfaces } = picture;
   const every = Math.max(1, Math.ceil(elements / THUMBNAIL));
   const width = (canvas.width = Math.floor(elements / every));
@@ -1470,14 +1545,11 @@ function drawThumbnail(canvas, { picture, glass }, state) {
   for (const { name, first, levels, floor, fixed } of surfaces) {
     if (!fixed) load(table, first, entriesOf(paintOf(state, name), levels, floor));
   }
-  const words = Uint16Array.from(
+  const colors = Uint32Array.from(
     { length: width * canvas.height },
-    (_, at) => glass.words[(Math.floor(at / width) * elements + (at % width)) * every],
+    (_, at) => table[words[(Math.floor(at / width) * elements + (at % width)) * every]],
   );
-  drawPixels(
-    canvas,
-    Uint32Array.from(words, (word) => table[word]),
-  );
+  drawPixels(canvas, colors);
 }
 
 /**
@@ -1489,14 +1561,21 @@ function sharing(desk, hosted) {
   const stem = picture.name.replace(/[^\p{L}\p{N}._-]+/gu, "-") || "picture";
   const button = (/** @type {string} */ text, /** @type {() => void} */ onclick) =>
     make("button", { onclick }, text);
-  async function copy() {
+  async function copy(/** @type {string} */ text) {
     try {
-      await navigator.clipboard.writeText(location.href);
-      desk.say("The link with these colors is copied.");
+      await navigator.clipboard.writeText(text);
+      desk.say("Copied, with these colors.");
     } catch {
       desk.say("The browser refused; copy the link from its address bar.");
     }
   }
+  function copyEmbedded() {
+    const url = new URL(location.href);
+    url.searchParams.set("embed", "1");
+    const source = url.href.replaceAll("&", "&amp;");
+    copy(`<iframe src="${source}" title="A picture to recolor" width="640" height="600"></iframe>`);
+  }
+  const hasAddress = location.protocol.startsWith("http");
   function savePicture() {
     const image = averaged(glass.pixels, picture.elements, picture.smooth);
     const canvas = make("canvas", { width: image.width, height: image.height });
@@ -1511,7 +1590,8 @@ function sharing(desk, hosted) {
   }
   return div(
     "sharing",
-    ...(hosted ? [] : [button("Copy link", copy)]),
+    ...(hosted ? [] : [button("Copy link", () => copy(location.href))]),
+    ...(hosted || !hasAddress ? [] : [button("Copy embed code", copyEmbedded)]),
     button("Save PNG", savePicture),
     button("Save CSV", saveValues),
   );
@@ -1575,11 +1655,12 @@ export default {
 
     function hear(/** @type {any} */ message) {
       if (typeof message?.answer !== "string" || messages.length === 0) return;
-      messages.shift();
+      const answered = messages.shift();
       sendFirst();
       if (message.answer) changed.add("picture");
       show();
       if (message.answer) handle.say(message.answer);
+      else if (answered.undo || answered.redo) handle.say(answered.undo ? "Undone." : "Redone.");
       else if (isLate) handle.say("The studio has answered.");
       isLate = false;
     }

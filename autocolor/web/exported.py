@@ -9,10 +9,13 @@ browser averages them. The keys of an export:
   colors can be edited: the browser computes these from their paints;
 - `surfaces`, in the order of their numbers: `name`, `first` and `levels` of the range; `shades`, the levels
   that light can give, fewer than `levels` on a surface with bands; `floor`, as `colors.entries_of` takes it;
-  `pixels`; `fixed`, why the colors cannot be edited, or ""; `paint`, the fields of the paint;
+  `fixed`, why the colors cannot be edited, or ""; `paint`, the fields of the paint;
+- `views`: the `name` and the packed `words` of each view, in the order of a turn; none if there is one view.
+  The words of the first are `words` of the picture. All views have the same entries;
+- `swatches`: colors by name;
 - `legend`: None, or `line`, `element`, `lines`, `elements` and packed `words` to draw over the words;
 - `notes`: sentences about the picture;
-- `variants`: the `name` of each, its changed `paints` by surface and its changed `lights` by light;
+- `variants`: the `name` of each, and the `values` that it changes, by key;
 - `lights`: None, or what `_light_values` exports.
 
 All bytes are base64. Words and planes are compressed twice: as differences between neighbors, which are
@@ -28,10 +31,10 @@ first + band x shades + level, where the band is known from the exported word. W
 64 steps: the level is floor((steps + k) / 64), where `steps` counts thresholds and k, 0 to 63, is the rank of
 the pixel in the tile of `intensity.ordered_thresholds`.
 
-Measured: the words of the coupe take 31.4 kB at 640 x 480 and 73.7 kB with smooth=2, the planes of its four
-lights 239 and 642 kB. Measured and rejected for the words: differences of 16 bits, 36.7 and 88.5 kB; the
-predictors of PNG (Paeth) and of JPEG-LS, 79 kB with smooth=2; the word above as a second predictor, 72.3 kB
-for twice the code in the browser.
+Measured: the words of the coupe take 31.4 kB at 640 x 480 and 73.7 kB with smooth=2, those of twelve views
+610 kB, the planes of its four lights 239 and 642 kB. Measured and rejected for the words: differences of 16
+bits, 36.7 and 88.5 kB; the predictors of PNG (Paeth) and of JPEG-LS, 79 kB with smooth=2; the word above as a
+second predictor, 72.3 kB for twice the code in the browser.
 """
 
 from __future__ import annotations
@@ -39,12 +42,12 @@ from __future__ import annotations
 import json
 import zlib
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 
-from autocolor.arrays import HALF, Bytes, Singles, Words, underflowing
+from autocolor.arrays import HALF, Singles, Words, underflowing
 from autocolor.batches.table import Rows, Variant, variants_of
 from autocolor.budget import require_memory
 from autocolor.checks import brief, listed, shown
@@ -63,16 +66,19 @@ from autocolor.mapping.intensity import (
     ranges_of,
 )
 from autocolor.mapping.legend import legend
-from autocolor.rendering import rendering
+from autocolor.rendering import render, rendering
 from autocolor.scene.columns import fields_of
 from autocolor.scene.curves import Fractions
 from autocolor.scene.kinds import in_digits
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import OBJECT, Scene
 from autocolor.scene.surfaces import Paint
+from autocolor.scene.swatches import car_paints
+from autocolor.scene.view import NamedView
 from autocolor.sending import shown_words
+from autocolor.web.views import check_table, exposure_to_hold, held_scene
 
-FORMAT: Final = "autocolor page 1"
+FORMAT: Final = "autocolor page 2"
 
 LARGEST_CANVAS: Final = 16_777_216
 """Limit: pixels of a picture in a browser. Canvases of phones hold no more."""
@@ -80,6 +86,9 @@ LARGEST_CANVAS: Final = 16_777_216
 MOST_PLANE_POINTS: Final = 1 << 26
 """Limit: visible points of all light planes together, for which a browser takes 134 MB: four lights on the
 largest canvas."""
+
+MOST_VIEW_PIXELS: Final = 1 << 26
+"""Limit: pixels of all views together, for whose words a browser takes 134 MB."""
 
 MOST_VARIANTS_SHOWN: Final = 1000
 """Limit: variants of a picture in a browser."""
@@ -102,25 +111,32 @@ LARGEST_SHARE: Final = 65535
 TILE: Final = 64
 """The thresholds of a tile of ordered dither."""
 
-EQUALIZE: Final = "equalize"
-"""The mapping that follows the picture."""
-
 HELD: Final = "Exposure is held as exported: with less light, the picture is darker."
 
 
-def export_of(scene: Scene, picture: Picture, *, lights: bool = False, variants: Rows = ()) -> dict[str, Any]:
+def export_of(
+    scene: Scene,
+    picture: Picture,
+    *,
+    lights: bool = False,
+    variants: Rows = (),
+    views: Sequence[NamedView] = (),
+    progress: Callable[[str], object] | None = None,
+) -> dict[str, Any]:
     """A picture in the colors of a scene, as values that JSON can hold.
 
-    With `lights`, the scene is rendered again, and must give the same picture.
+    With `lights`, the scene is rendered again, and must give the same picture. With two `views` or more, the
+    picture is the first of them, and the others are rendered in its size. `progress` is called with the name
+    of each rendered view.
 
     Raises InputError if the surfaces of the picture are not those of the scene, if the picture or its light
     planes are too large for a browser or exceed the memory budget, and for an invalid value of a variant;
     UsageError for a variant with a key that a browser cannot change, and for too many variants. With
-    `lights`, also InputError if the picture is not the scene's, or has no lights or a single intensity, and
-    UsageError if words stand for normals.
+    `lights`, also InputError if the picture is not the scene's or has no lights. With `lights` or views, also
+    as `views.exposure_to_hold`, and with views as `views.check_table`.
     """
     check_surfaces(scene, picture)
-    check_canvas(picture.elements, picture.lines)
+    check_canvas(picture.elements, picture.lines, len(views))
     lit_pixel = BYTES_OF_LIT_PIXEL + BYTES_OF_LIGHT * len(scene.lights)
     require_memory(
         (lit_pixel if lights else BYTES_OF_PIXEL) * picture.lines * picture.elements,
@@ -128,36 +144,60 @@ def export_of(scene: Scene, picture: Picture, *, lights: bool = False, variants:
         "render fewer pixels or lights",
     )
     image = display_image(scene, picture)
-    values = values_of(image)
-    return {
-        **values,
+    if len(views) > 1:
+        image = display_image(held_scene(image), picture)
+    values, entries = values_of(image), image.entries.copy()
+    values |= {
         "smooth": picture.smooth,
         "words": _text(packed_words(image.words)),
-        "entries": _text(zlib.compress(_fixed_entries(image, values["surfaces"]).tobytes(), 9)),
         "legend": _legend_values(image, picture.smooth),
         "variants": _variant_values(image, values, variants, lights),
         "lights": _light_values(image) if lights else None,
     }
-
-
-def _fixed_entries(image: DisplayImage, surfaces: Sequence[Mapping[str, Any]]) -> Bytes:
-    """The entries of an image, (1024, 3) uint8, with zeros for the exported surfaces that are not fixed.
-
-    Measured: the page of the coupe loses 3 kB.
-    """
-    entries = image.entries.copy()
-    for surface in surfaces:
+    known = _visible(picture)
+    for turned in views[1:]:
+        scene = image.scene.replace(view=turned.view)
+        shown = display_image(scene, render(scene, picture.size, smooth=picture.smooth))
+        check_table(turned.name, shown, image)
+        values["views"].append({"name": turned.name, "words": _text(packed_words(shown.words))})
+        for surface in values["surfaces"]:
+            # The first view that shows a surface tells how bright its lowest level is.
+            if surface["name"] in _visible(shown.picture) - known:
+                surface["floor"] = shown.floor_of(surface["name"])
+                entries[_run(surface)] = shown.entries_of(surface["name"])
+        known |= _visible(shown.picture)
+        if progress is not None:
+            progress(turned.name)
+    if values["views"]:
+        values["views"].insert(0, {"name": views[0].name, "words": ""})
+    for surface in values["surfaces"]:
+        # The browser computes these. Measured: the page of the coupe loses 3 kB.
         if not surface["fixed"]:
-            entries[surface["first"] : surface["first"] + surface["levels"]] = 0
-    return entries
+            entries[_run(surface)] = 0
+    return {**values, "entries": _text(zlib.compress(entries.tobytes(), 9))}
 
 
-def check_canvas(elements: int, lines: int) -> None:
-    """Raise InputError for a picture that is larger than a canvas of a phone, samples included."""
+def _run(surface: Mapping[str, Any]) -> slice:
+    """The entries of an exported surface."""
+    return slice(surface["first"], surface["first"] + surface["levels"])
+
+
+def _visible(picture: Picture) -> set[str]:
+    """The names of the surfaces that a picture shows."""
+    return {picture.surfaces[each.surface_number - 1] for each in picture.slices}
+
+
+def check_canvas(elements: int, lines: int, views: int = 1) -> None:
+    """Raise InputError for a picture larger than a canvas of a phone, samples included, or too many views."""
     if lines * elements > LARGEST_CANVAS:
         raise InputError(
             f"a picture in a browser must have at most {LARGEST_CANVAS:,} pixels, which canvases of phones"
             f" hold, not {elements:,} x {lines:,}; render it smaller or with less `smooth`"
+        )
+    if views * lines * elements > MOST_VIEW_PIXELS:
+        raise InputError(
+            f"the views of a page must have at most {MOST_VIEW_PIXELS:,} pixels together, not {views} x"
+            f" {elements:,} x {lines:,}; ask for fewer views, or render them smaller"
         )
 
 
@@ -167,7 +207,6 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
     Nothing is smooth, the words contain the legend, if any, and there are no variants and no lights.
     """
     scene, (lines, elements) = image.scene, image.words.shape
-    counts = np.bincount(image.words.ravel(), minlength=len(image.entries))
     surfaces = []
     for name, (first, levels) in image.ranges.items():
         bands = image.bands.get(name)
@@ -178,7 +217,6 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
                 "levels": levels,
                 "shades": levels if bands is None else bands.shades,
                 "floor": image.floor_of(name),
-                "pixels": int(counts[first : first + levels].sum()),
                 "fixed": _reason_of_fixed(image, name),
                 "paint": paint_values(scene.surfaces[name].paint),
             }
@@ -191,6 +229,8 @@ def values_of(image: DisplayImage) -> dict[str, Any]:
         "smooth": 1,
         "background": in_digits(scene.background),
         "surfaces": surfaces,
+        "swatches": {name: in_digits(color) for name, color in car_paints().items()},
+        "views": [],
         "legend": None,
         "notes": _notes(image),
         "variants": [],
@@ -288,24 +328,10 @@ def _light_values(image: DisplayImage) -> dict[str, Any]:
     `dither`.
     """
     scene, picture = image.scene, image.picture
-    if not image.has_light_in_words:
-        raise UsageError(
-            "a page with lights must have words that stand for levels, not for normals; render the scene with"
-            ' words="levels", or leave the lights out'
-        )
-    if scene.mapping == EQUALIZE:
-        raise InputError(
-            "a page with lights must have a mapping that stays with the exposure, not equalize, which follows"
-            " the picture; set mapping to linear, or leave the lights out"
-        )
     if not scene.lights:
         raise InputError("a page with lights must have a light in its scene, not none; leave the lights out")
+    exposure_to_hold(image, "lights")
     extents = ranges_of(scene, picture)
-    if isinstance(scene.exposure, str) and not has_extent(picture.relative_ranges[WHOLE]):
-        raise InputError(
-            "the picture of a page with lights must have more than one intensity, or there is no exposure to"
-            " hold; switch a light on, or leave the lights out"
-        )
     if len(picture.pixels) * len(scene.lights) > MOST_PLANE_POINTS:
         raise InputError(
             f"a page with lights must have at most {MOST_PLANE_POINTS:,} visible points of all lights"
@@ -432,30 +458,30 @@ def _variant_values(
             f"a page must have at most {MOST_VARIANTS_SHOWN:,} variants, not {len(rows):,}; leave some out"
         )
     check_variants(image.scene, rows, lights)
-    surfaces = {surface["name"]: surface for surface in values["surfaces"]}
+    editable = [surface["name"] for surface in values["surfaces"] if not surface["fixed"]]
+    before = _state(image.scene, editable)
     exported = []
     for variant in rows:
         try:
-            scene = scene_with(image.scene, variant.settings)
+            state = _state(scene_with(image.scene, variant.settings), editable)
         except InputError as error:
             raise InputError(
                 f"variant {shown(variant.name)}: {problem}" for problem in error.problems
             ) from None
-        changes = {
-            name: _changes(surface["paint"], paint_values(scene.surfaces[name].paint))
-            for name, surface in surfaces.items()
-            if not surface["fixed"]
-        }
-        pairs = zip(light_rows(image.scene), light_rows(scene), strict=True)
-        light_changes = {old["name"]: _changes(old, new, ("on", "intensity")) for old, new in pairs}
-        exported.append(
-            {
-                "name": variant.name,
-                "paints": {name: change for name, change in changes.items() if change},
-                "lights": {name: change for name, change in light_changes.items() if change},
-            }
-        )
+        changes = {key: value for key, value in state.items() if value != before[key]}
+        exported.append({"name": variant.name, "values": changes})
     return exported
+
+
+def _state(scene: Scene, editable: Sequence[str]) -> dict[str, Any]:
+    """The values that a browser can change, by key: of the paints of some surfaces, and of all lights."""
+    paints = {name: paint_values(scene.surfaces[name].paint) for name in editable}
+    state = {
+        f"surfaces.{name}.{key}": value for name, paint in paints.items() for key, value in paint.items()
+    }
+    for row in light_rows(scene):
+        state |= {f"lights.{row['name']}.{key}": row[key] for key in ("on", "intensity")}
+    return state
 
 
 def check_variants(scene: Scene, variants: Sequence[Variant], lights: bool) -> None:
@@ -481,8 +507,3 @@ def check_variants(scene: Scene, variants: Sequence[Variant], lights: bool) -> N
             else:
                 continue
             raise UsageError(f"variant {shown(variant.name)}: {brief(key)}: {problem}")
-
-
-def _changes(old: Mapping[str, Any], new: Mapping[str, Any], keys: Sequence[str] = ()) -> dict[str, Any]:
-    """The new values that differ, of some keys or of all."""
-    return {key: new[key] for key in keys or new if new[key] != old[key]}

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 from autocolor import read_picture, save_page
 from tests.autocolor.commands.conftest import SMALL, Refused, Run, is_same
@@ -44,7 +45,8 @@ def test_a_scene_is_rendered_with_smooth_edges(folder: Path, run: Run) -> None:
 def test_a_scene_that_is_too_large_for_samples_has_none(
     folder: Path, run: Run, refused: Refused, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("autocolor.web.exported.LARGEST_CANVAS", 4 * 32 * 24)
+    for module in ("exported", "page"):
+        monkeypatch.setattr(f"autocolor.web.{module}.LARGEST_CANVAS", 4 * 32 * 24)
     for size, smooth in (("32x24", 2), ("64x48", 1)):
         assert run("page", "scene", "--size", size, "--force").code == 0
         assert picture_in("scene.html")["smooth"] == smooth
@@ -64,6 +66,20 @@ def test_a_page_has_lights_and_variants(saved: Path, run: Run) -> None:
     ]  # fmt: skip
     assert values["variants"][3] == {
         "name": "evening-1",
-        "paints": {"side": {"object_color": "#000080", "blend": 1.0}},
-        "lights": {"key": {"intensity": 0.5}},
+        "values": {
+            "surfaces.side.object_color": "#000080",
+            "surfaces.side.blend": 1.0,
+            "lights.key.intensity": 0.5,
+        },
     }
+
+
+def test_a_page_turns_and_has_an_image_beside_it(folder: Path, run: Run) -> None:
+    address = "https://example.com/scene.html"
+    written = "wrote scene.html\nwrote scene.png\n"
+    assert run("page", "scene", *SMALL, "--views", "3", "--link", address) == (0, "", written)
+    values = picture_in("scene.html")
+    assert [view["name"] for view in values["views"]] == ["0°", "120°", "240°"]
+    assert values["link"] == address
+    with Image.open("scene.png") as png:
+        assert png.size == (32, 24)

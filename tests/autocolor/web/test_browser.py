@@ -17,11 +17,15 @@ from PIL import Image
 
 import autocolor
 from autocolor.files.settings import scene_with
-from autocolor.images import image, save_image
+from autocolor.images import display_image, image, save_image
 from autocolor.mapping.colors import entries_of, white_of, with_white
+from autocolor.scene.kinds import in_digits
+from autocolor.scene.orbit import around
 from autocolor.scene.surfaces import Paint
+from autocolor.scene.swatches import car_paints
 from autocolor.web.exported import export_of, paint_values
 from ramtek_emu import GMR_9300, Ramtek9300
+from tests.small import car
 from tests.tables import first
 
 if TYPE_CHECKING:
@@ -81,7 +85,7 @@ def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
 
     def open_page(
         scene: autocolor.Scene,
-        picture: autocolor.Picture,
+        picture: autocolor.Picture | None,
         fragment: str = "",
         context: Any = None,
         **page: Any,
@@ -108,7 +112,7 @@ def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
 def module(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     """An empty page, from a file, with the module's functions as `autocolor`."""
     empty = tmp_path_factory.mktemp("web") / "empty.html"
-    names = "entriesOf, unpackWords, relighting, whiteOf, withWhite"
+    names = "entriesOf, fragmentOf, stateOfFragment, unpackWords, relighting, whiteOf, withWhite"
     empty.write_text("<!doctype html><title>empty</title>")
     page = browser.new_page()
     page.goto(empty.as_uri())
@@ -266,7 +270,7 @@ def test_a_drag_is_one_step_and_the_link_has_the_colors(
     page.wait_for_function("location.hash.length > 1")
     dragged, fragment = page.evaluate(SHOWN), page.evaluate("location.hash.slice(1)")
     assert dragged != before
-    assert fragment.startswith("surfaces.body.object_color=")
+    assert fragment.startswith("body=")
     assert "no word" in page.get_by_role("status").inner_text()
     page.keyboard.press("Control+z")
     assert page.evaluate(SHOWN) == before
@@ -289,6 +293,7 @@ FOREIGN_LINKS = {
     "surfaces.body.ramp=102030": "“102030”",
     "lights.key.on=false": "lights.key.on",
     "chapter-2": "chapter-2",
+    "view=2": "view",
     "%E0%A4%A": "%E0%A4%A",
     "__proto__=1": "__proto__",
 }
@@ -419,7 +424,7 @@ def test_a_light_is_dimmed_and_switched_off(
     page.get_by_label("Strength of light key, as a number").fill("0")
     page.get_by_role("switch", name="Light key").check()
     assert page.evaluate(SHOWN) == dark != before
-    assert page.evaluate("location.hash") == "#lights.key.intensity=0"
+    assert page.evaluate("location.hash") == "#key.intensity=0"
     page.get_by_role("button", name="Reset").click()
     assert page.evaluate(SHOWN) == before
 
@@ -448,16 +453,237 @@ def test_a_variant_is_chosen_as_one_step_and_compared_with_before(
     assert page.evaluate(SHOWN) == before
 
 
+def test_links_are_short_whatever_names_surfaces_and_lights_have(module: Page) -> None:
+    names, paint = ("body", "body.blend", "view", "key"), paint_values(Paint())
+    first = {f"surfaces.{name}.{field}": value for name in names for field, value in paint.items()}
+    first |= {"lights.key.on": True, "lights.key.intensity": 1.0}
+    picture = {"views": [{"name": "0°"}, {"name": "180°"}], "lights": None}
+    for key, value, fragment in (
+        ("surfaces.body.object_color", "#102030", "body=102030"),
+        ("surfaces.body.light_color", "#102030", "body.light_color=102030"),
+        ("surfaces.key.ramp", ["#102030", "#ffffff"], "key.ramp=102030%2Cffffff"),
+        ("lights.key.on", False, "key.on=false"),
+        # The short name of the second is that of the first.
+        ("surfaces.body.blend", 0.5, "body.blend=0.5"),
+        ("surfaces.body.blend.object_color", "#102030", "surfaces.body.blend.object_color=102030"),
+        ("surfaces.view.object_color", "#102030", "surfaces.view.object_color=102030"),
+    ):
+        state = {**first, key: value}
+        for link in (fragment, f"{key}={fragment.partition('=')[2]}"):
+            found = module.evaluate(
+                """([state, first, link, picture]) => [
+                    autocolor.fragmentOf(state, first, 1), autocolor.stateOfFragment(link, picture, first),
+                ]""",
+                [state, first, link, picture],
+            )
+            assert found == [f"view=2&{fragment}", {"state": state, "view": 0}]
+
+
+# A page that turns.
+
+
+@pytest.fixture(scope="module")
+def turning() -> tuple[autocolor.Scene, list[autocolor.Scene]]:
+    """A scene, and the scenes that the four views of its page show."""
+    scene = car().replace(contrast="floor", exposure="99 %")
+    views = around(scene, 4)
+    display = Ramtek9300(dataclasses.replace(GMR_9300, lines=240, elements=320))
+    studio = autocolor.Studio(scene.replace(view=views[0]), display)
+    studio.hold_exposure()
+    for name, (_, levels) in studio.level_ranges.items():
+        studio.surface(name, levels=levels)
+    return scene, [studio.scene.replace(view=view) for view in views]
+
+
+TURNING: dict[str, Any] = {"views": 4, "size": (160, 120), "smooth": 2}
+
+
+def shown_by(scene: autocolor.Scene) -> str:
+    return digest(image(scene, size=(320, 240), smooth=1))
+
+
+def wait_for_view(page: Page, name: str) -> None:
+    page.wait_for_function(
+        "name => document.querySelector('[role=status]').textContent.startsWith(`View ${name}:`)", arg=name
+    )
+
+
+def test_every_view_shows_the_image_of_its_scene_before_and_after_a_recoloring(
+    opened: Open, turning: tuple[autocolor.Scene, list[autocolor.Scene]]
+) -> None:
+    scene, views = turning
+    page = opened(scene, None, **TURNING)
+    for angle, shown in zip(("0°", "90°", "180°", "270°", "0°"), [*views, views[0]], strict=True):
+        assert page.evaluate(SHOWN) == shown_by(shown)
+        assert shown is views[0] or page.evaluate("location.hash") == f"#view={1 + views.index(shown)}"
+        page.keyboard.press("ArrowRight")
+        wait_for_view(page, {"0°": "90°", "90°": "180°", "180°": "270°", "270°": "0°"}[angle])
+    page.get_by_role("button", name="gold").click()
+    gold = [each.with_surface("body", object_color="#e0b030") for each in views]
+    assert page.evaluate(SHOWN) == shown_by(gold[1])
+    assert "no word" in page.get_by_role("status").inner_text()
+    png = np.asarray(Image.open(io.BytesIO(saved(page, "Save PNG"))).convert("RGB"))
+    assert (png == image(gold[1], size=(160, 120), smooth=2)).all()
+    page.get_by_role("button", name="Turn left").click()
+    wait_for_view(page, "0°")
+    assert page.evaluate(SHOWN) == shown_by(gold[0])
+    page.get_by_role("button", name="Before").click()
+    page.get_by_role("button", name="Turn left").click()
+    wait_for_view(page, "270°")
+    assert page.evaluate(SHOWN) == shown_by(gold[3])
+    assert page.evaluate(SHOWN.replace(".glass canvas", ".glass .before")) == shown_by(views[3])
+    fragment = page.evaluate("location.hash.slice(1)")
+    assert fragment == "view=4&body=e0b030"
+    again = opened(scene, None, fragment, **TURNING)
+    wait_for_view(again, "270°")
+    assert again.evaluate(SHOWN) == shown_by(gold[3])
+
+
+def test_a_drag_turns_and_chooses_no_surface(
+    opened: Open, turning: tuple[autocolor.Scene, list[autocolor.Scene]]
+) -> None:
+    scene, views = turning
+    page = opened(scene, None, **TURNING)
+    page.get_by_role("radio", name="wheels").check()
+    box = page.locator(".glass").bounding_box()
+    assert box
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - box["width"] / 4, y, steps=4)
+    # The near side follows the pointer to the left, so the eye moves to the right.
+    wait_for_view(page, "90°")
+    page.mouse.move(x + box["width"] / 4, y, steps=4)
+    wait_for_view(page, "270°")
+    assert page.evaluate("location.hash") == ""
+    page.mouse.up()
+    assert page.evaluate("location.hash") == "#view=4"
+    assert page.get_by_role("radio", name="wheels").is_checked()
+    page.mouse.move(x, y)
+    assert page.evaluate(SHOWN) == shown_by(views[3])
+    page.mouse.click(x, y)
+    assert page.get_by_role("radio", name="body").is_checked()
+
+
+def test_a_finger_turns_sideways_and_scrolls_the_page_up_and_down(
+    opened: Open, turning: tuple[autocolor.Scene, list[autocolor.Scene]]
+) -> None:
+    phone = {"has_touch": True, "is_mobile": True, "viewport": {"width": 390, "height": 844}}
+    page = opened(turning[0], None, context=phone, **TURNING)
+    session = page.context.new_cdp_session(page)
+
+    def swipe(right: int, down: int) -> None:
+        for step in range(11):
+            point = {"x": 195 + right * step / 10, "y": 260 + down * step / 10}
+            kind = "touchMove" if step else "touchStart"
+            session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
+        session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+    swipe(-100, 5)
+    wait_for_view(page, "90°")
+    assert page.evaluate("scrollY") == 0
+    swipe(5, -150)
+    page.wait_for_function("scrollY > 50")
+    assert page.evaluate("location.hash") == "#view=2"
+
+
+def test_lights_rest_in_other_views_and_shine_again_in_the_first(
+    opened: Open, turning: tuple[autocolor.Scene, list[autocolor.Scene]]
+) -> None:
+    scene, views = turning
+    page = opened(scene, None, **TURNING, lights=True)
+    page.get_by_role("switch", name="Light key").uncheck()
+    dark = page.evaluate(SHOWN)
+    assert dark != shown_by(views[0])
+    page.locator(".lights h2").click()
+    page.keyboard.press("ArrowLeft")
+    wait_for_view(page, "270°")
+    assert page.evaluate(SHOWN) == shown_by(views[3])
+    assert page.get_by_role("switch", name="Light key").is_disabled()
+    assert "first view only" in page.locator(".lights").inner_text()
+    page.get_by_role("button", name="Turn right").click()
+    wait_for_view(page, "0°")
+    assert page.evaluate(SHOWN) == dark
+    page.get_by_role("switch", name="Light key").check()
+    assert page.evaluate(SHOWN) == shown_by(views[0])
+
+
+# What a stranger sees first.
+
+
+def test_named_paints_and_a_surprise_recolor_the_chosen_surface(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, tmp_path: Path
+) -> None:
+    page = opened(coupe.with_surface("glass", ramp=["#000", "#fff"]), small)
+    for name in ("body", "glass"):
+        page.get_by_role("radio", name=name).check()
+        levels = display_image(coupe, small).ranges[name].levels
+        assert f"your paint changes {levels} of 1,024 colors" in page.locator(".head").inner_text()
+    for name, color in car_paints().items():
+        button = page.get_by_role("group", name="Paints for glass").get_by_role("button", name=name)
+        button.click()
+        assert button.get_attribute("aria-pressed") == "true"
+        assert page.get_by_label("The object color of glass as #rrggbb").input_value() == in_digits(color)
+    before = page.evaluate(SHOWN)
+    page.get_by_role("button", name="Surprise me").click()
+    surprised = page.evaluate(SHOWN)
+    assert surprised != before
+    (tmp_path / "values.csv").write_bytes(saved(page, "Save CSV"))
+    (variant,) = autocolor.read_variants(tmp_path / "values.csv")
+    assert surprised == digest(image(scene_with(coupe, variant.settings), small, smooth=1))
+    page.keyboard.press("Control+z")
+    assert page.evaluate(SHOWN) == before
+
+
+def test_a_page_with_an_address_gives_code_to_embed_it(
+    browser: Browser, coupe: autocolor.Scene, small: autocolor.Picture, tmp_path: Path
+) -> None:
+    autocolor.save_page(tmp_path / "coupe.html", coupe, small)
+    context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.route("**", lambda route: route.fulfill(body=(tmp_path / "coupe.html").read_bytes()))
+    page.goto("https://example.com/coupe.html?a=1&b=2#body=102030")
+    page.get_by_role("button", name="Copy embed code").click()
+    page.wait_for_function("document.querySelector('[role=status]').textContent.startsWith('Copied')")
+    source = "https://example.com/coupe.html?a=1&amp;b=2&amp;embed=1#body=102030"
+    assert f'src="{source}"' in page.evaluate("navigator.clipboard.readText()")
+    context.close()
+
+
+def test_an_embedded_page_has_the_picture_and_the_paints_and_prints_the_picture(
+    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture
+) -> None:
+    def is_visible(page: Page) -> list[bool]:
+        return [
+            page.locator(each).is_visible() for each in (".glass", ".paints", ".panel", ".tools", ".table")
+        ]
+
+    page = opened(coupe, small, link="https://example.com/coupe.html")
+    assert page.get_by_role("link", name="coupe").get_attribute("href") == "https://example.com/coupe.html"
+    assert is_visible(page) == [True, True, True, True, True]
+    page.emulate_media(media="print")
+    assert is_visible(page) == [True, False, False, False, False]
+    page.emulate_media(media="screen")
+    page.goto(page.url + "?embed")
+    page.wait_for_selector(".glass canvas")
+    assert is_visible(page) == [True, True, False, False, False]
+    page.get_by_role("button", name="blue").click()
+    assert page.evaluate(SHOWN) == digest(
+        image(coupe.with_surface("body", object_color="#1e4a80"), small, smooth=1)
+    )
+
+
 AXE = Path(os.environ.get("AXE_CORE", "not set"))
 
 
 @pytest.mark.skipif(not AXE.is_file(), reason="AXE_CORE is not the path of axe.min.js of axe-core")
 @pytest.mark.parametrize("scheme", first(1, ["light", "dark"]))
-def test_the_accessibility_checker_finds_nothing(
-    opened: Open, coupe: autocolor.Scene, small: autocolor.Picture, scheme: str
-) -> None:
-    page = opened(coupe, small, context={"color_scheme": scheme, "bypass_csp": True}, variants=VARIANTS)
+def test_the_accessibility_checker_finds_nothing(opened: Open, coupe: autocolor.Scene, scheme: str) -> None:
+    context = {"color_scheme": scheme, "bypass_csp": True}
+    page = opened(coupe, None, "view=2", context, **TURNING, lights=True, variants=VARIANTS)
+    wait_for_view(page, "90°")
     page.get_by_role("button", name="Before").click()
+    page.locator("summary").click()
     page.evaluate(AXE.read_text("utf-8"))
     found = page.evaluate("async () => (await axe.run()).violations")
     assert [(each["id"], each["impact"], [node["html"] for node in each["nodes"]]) for each in found] == []

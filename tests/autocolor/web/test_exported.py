@@ -54,7 +54,10 @@ from tests.small import car, cube, wall_scene
 from tests.tables import first
 
 SIZE = (32, 24)
-KEYS = "background elements entries format legend lights lines name notes smooth surfaces variants words"
+KEYS = (
+    "background elements entries format legend lights lines name notes smooth surfaces swatches variants"
+    " views words"
+)
 
 
 def values_through_json(scene: Scene, **options: Any) -> Any:
@@ -135,8 +138,6 @@ def test_an_export_has_the_words_the_entries_and_the_ranges_of_the_display_image
         name = each["name"]
         assert bool(each["fixed"]) == (name in shown.bands)
         assert each["shades"] == (shown.bands[name].shades if name in shown.bands else each["levels"])
-        is_surface = (shown.words >= each["first"]) & (shown.words < each["first"] + each["levels"])
-        assert each["pixels"] == np.count_nonzero(is_surface)
 
 
 @pytest.mark.parametrize("smooth", first(1, [2, 1]))
@@ -257,14 +258,6 @@ def lit(edited: Scene, rendered: Scene | None = None) -> object:
         (lambda: lit(car().with_view(angle=5), car()), "the lights of a picture must be computed"),
         (lambda: lit(car().replace(lights=()), car()), "a page with lights must have a light in its scene"),
         (lambda: lit(car().only_lights()), "the picture of a page with lights must have more than one"),
-        (
-            lambda: lit(car().replace(words="normals")),
-            "a page with lights must have words",
-        ),
-        (
-            lambda: lit(car().replace(mapping="equalize")),
-            "a page with lights must have a mapping that stays with the exposure, not equalize",
-        ),
         (lambda: check_canvas(4096, 4097), "a picture in a browser must have at most 16,777,216 pixels"),
     ],
 )
@@ -305,18 +298,20 @@ def test_a_variant_has_the_fields_of_paints_and_lights_that_it_changes() -> None
         {"name": "saved", "lights.key.on": "false", "exposure": '{ "object" = [0.0, 1.0] }'},
     ]
     assert values_through_json(scene, variants=rows, lights=True)["variants"] == [
-        {"name": "night", "paints": {"body": {"object_color": "#000080"}}, "lights": {"key": {"on": False}}},
+        {"name": "night", "values": {"surfaces.body.object_color": "#000080", "lights.key.on": False}},
         {
             "name": "1,2,3-0.4",
-            "paints": {"glass": {"object_color": "#010203", "ramp": None}},
-            "lights": {},
+            "values": {"surfaces.glass.object_color": "#010203", "surfaces.glass.ramp": None},
         },
         {
             "name": "2-none-0.25",
-            "paints": {"body": {"blend": 0.25}, "glass": {"ramp": None}},
-            "lights": {"fill": {"intensity": 2.0}},
+            "values": {
+                "surfaces.body.blend": 0.25,
+                "surfaces.glass.ramp": None,
+                "lights.fill.intensity": 2.0,
+            },
         },
-        {"name": "saved", "paints": {}, "lights": {"key": {"on": False}}},
+        {"name": "saved", "values": {"lights.key.on": False}},
     ]
 
 

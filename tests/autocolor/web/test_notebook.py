@@ -492,7 +492,8 @@ def test_a_browser_shows_every_step_and_its_edits_are_steps_of_the_studio(window
     shown = window(cell, display)
     page = shown.page
     shown.check()
-    # A color that is typed in the browser.
+    # A color that is typed in the browser, where a notebook takes Enter for itself.
+    page.evaluate("() => {document.onkeydown = press => press.key !== 'Enter'}")
     field = page.get_by_role("textbox", name="#rrggbb")
     field.fill("#204080")
     field.press("Enter")
@@ -514,6 +515,7 @@ def test_a_browser_shows_every_step_and_its_edits_are_steps_of_the_studio(window
     for name in ("Undo", "Undo", "Undo", "Undo", "Redo"):
         page.get_by_role("button", name=name, disabled=False).click()
         shown.check()
+        shown.wait_for_status(f"{name}ne.")
     assert cell.undo_and_redo == (1, 3)
     studio.undo()
     shown.check()

@@ -2,13 +2,16 @@ from __future__ import annotations
 
 import json
 import re
-from base64 import b64encode
+from base64 import b64decode, b64encode
 from hashlib import sha256
 from html.parser import HTMLParser
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from autocolor import (
     InputError,
@@ -17,10 +20,12 @@ from autocolor import (
     Surface,
     UsageError,
     demo,
+    image,
     render,
     save_page,
     scene_of,
 )
+from autocolor.images import display_image
 from autocolor.web.exported import export_of
 from autocolor.web.page import page_of, without_comments
 from tests.small import car, sphere
@@ -135,13 +140,89 @@ def test_a_page_has_no_part_for_notebooks() -> None:
 
 
 @pytest.mark.thorough
-def test_the_pages_of_the_coupe_are_small(tmp_path: Path) -> None:
-    scene = demo()
-    picture = render(scene, smooth=2)
-    save_page(tmp_path / "coupe.html", scene, picture)
-    save_page(tmp_path / "lit.html", scene, picture, lights=True)
-    assert (tmp_path / "coupe.html").stat().st_size <= 150_000
-    assert (tmp_path / "lit.html").stat().st_size <= 1_200_000
+@pytest.mark.parametrize(
+    ("options", "most"),
+    [
+        ({}, 180_000),
+        ({"lights": True}, 1_200_000),
+        ({"views": 12}, 1_400_000),
+        ({"views": 12, "lights": True}, 2_200_000),
+    ],
+)
+def test_the_pages_of_the_coupe_are_small(tmp_path: Path, options: dict[str, Any], most: int) -> None:
+    save_page(tmp_path / "coupe.html", demo(), **options)
+    assert (tmp_path / "coupe.html").stat().st_size <= most
+
+
+LINE = "General Motors, 1983: the picture is sent once; your paint changes {} of 1,024 colors."
+
+
+def metas_of(page: Elements) -> dict[str, str]:
+    """The contents of the elements that other sites read, by name or property."""
+    rows = [attributes for attributes, _ in page.all("meta")]
+    return {
+        str(row.get("property") or row["name"]): str(row["content"])
+        for row in rows
+        if "property" in row or row.get("name") in ("description", "twitter:card")
+    }
+
+
+def test_a_page_tells_other_sites_what_it_is(tmp_path: Path) -> None:
+    scene = car().replace(name="my car")
+    address = "https://example.com/cars/"
+    save_page(tmp_path / "my car.html", scene, size=SIZE, link=address)
+    page = Elements((tmp_path / "my car.html").read_text("utf-8"))
+    levels = display_image(scene, render(scene, SIZE, smooth=2)).ranges["body"].levels
+    about = {"og:title": "my car", "og:description": LINE.format(levels), "description": LINE.format(levels)}
+    assert metas_of(page) == {
+        **about,
+        "og:url": address,
+        "og:image": "https://example.com/cars/my%20car.png",
+        "twitter:card": "summary_large_image",
+    }
+    colors = np.asarray(Image.open(tmp_path / "my car.png").convert("RGB"))
+    assert (colors == image(scene, size=SIZE, smooth=2)).all()
+    save_page(tmp_path / "alone.html", scene, size=SIZE)
+    assert metas_of(Elements((tmp_path / "alone.html").read_text("utf-8"))) == about
+    assert not (tmp_path / "alone.png").exists()
+
+
+def test_a_page_shows_a_small_image_before_its_script_runs(tmp_path: Path) -> None:
+    save_page(tmp_path / "car.html", car(), size=(1300, 650), smooth=1)
+    ((attributes, _),) = Elements((tmp_path / "car.html").read_text("utf-8")).all("img")
+    source = attributes["src"] or ""
+    data = b64decode(source.removeprefix("data:image/webp;base64,"))
+    assert len(data) <= 12_000
+    assert Image.open(BytesIO(data)).size == (640, 320)
+    assert (attributes["width"], attributes["height"]) == ("1300", "650")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        *({"link": link} for link in ("coupe.html", "ftp://a.com/a.html", "javascript:alert(1)", "https:")),
+        *({"link": link} for link in ("https://[", "https://a.com/a b", "https://a.com/\ud800", 5, None)),
+        *({"size": size} for size in ((0, 1), 5, (32, "24"))),
+        {"smooth": 0},
+    ],
+)
+def test_an_option_that_is_wrong_is_refused(tmp_path: Path, options: dict[str, Any]) -> None:
+    with pytest.raises(UsageError, match=r"^(a link must be the address|a size must|smooth must)"):
+        save_page(tmp_path / "car.html", car(), **{"size": SIZE, **options})
+    assert not [*tmp_path.iterdir()]
+
+
+def test_a_page_with_a_link_never_overwrites_a_png_unasked(tmp_path: Path) -> None:
+    (tmp_path / "car.png").write_text("mine")
+    with pytest.raises(OutputError):
+        save_page(tmp_path / "car.html", car(), size=SIZE, link="https://example.com/")
+    assert (tmp_path / "car.png").read_text() == "mine"
+    assert not (tmp_path / "car.html").exists()
+
+
+def test_the_line_of_a_page_of_scalars_says_nothing_of_a_paint() -> None:
+    scene = car().with_scalar(name="z")
+    assert metas_of(page_with(scene))["description"] == "General Motors, 1983: the picture is sent once."
 
 
 def test_a_page_is_never_written_over_unasked(tmp_path: Path) -> None:
@@ -151,7 +232,8 @@ def test_a_page_is_never_written_over_unasked(tmp_path: Path) -> None:
     save_page(path, scene, picture)
     before = path.read_bytes()
     # The page of a picture is the same every time.
-    assert before.decode() == page_of(export_of(scene, render(scene.replace(), SIZE)))
+    save_page(tmp_path / "again.html", scene, size=SIZE, smooth=1)
+    assert before == (tmp_path / "again.html").read_bytes()
     with pytest.raises(OutputError):
         save_page(path, scene.with_surface("body", object_color="navy"), picture)
     assert path.read_bytes() == before
