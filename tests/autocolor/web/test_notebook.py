@@ -322,6 +322,11 @@ def test_every_step_of_the_studio_shows_in_all_widgets(tmp_path: Path) -> None:
     cells = [shown_in(studio)[1] for _ in range(2)]
     other = Studio(boxes(), Ramtek9300(SMALL))
     other.save(tmp_path / "other.npz")
+
+    def move() -> None:
+        studio.edit(studio.scene.with_view(angle=20), moving=True)
+        studio.refine()
+
     steps: list[Callable[[], object]] = [
         lambda: studio.keep_variant("A"),
         lambda: studio.recolor("body", object_color="#102030"),
@@ -329,8 +334,7 @@ def test_every_step_of_the_studio_shows_in_all_widgets(tmp_path: Path) -> None:
         studio.redo,
         lambda: studio.show_variant("A"),
         lambda: studio.remove_light("fill"),
-        lambda: studio.edit(studio.scene.with_view(angle=20), moving=True),
-        studio.refine,
+        move,
         lambda: studio.undo(3),
         studio.normals,
         lambda: studio.light("key", intensity=0.1),
