@@ -570,8 +570,16 @@ def test_a_drag_turns_and_chooses_no_surface(
     assert page.get_by_role("radio", name="wheels").is_checked()
     page.mouse.move(x, y)
     assert page.evaluate(SHOWN) == shown_by(views[3])
+    page.mouse.down()
+    page.mouse.move(x, y - 20)
+    page.mouse.up()
+    assert page.get_by_role("radio", name="wheels").is_checked()
     page.mouse.click(x, y)
     assert page.get_by_role("radio", name="body").is_checked()
+    # The outline of the chosen surface does not stay over another view.
+    page.keyboard.press("ArrowRight")
+    wait_for_view(page, "0°")
+    assert page.evaluate("document.querySelector('.outline').getAnimations().length") == 0
 
 
 def test_a_finger_turns_sideways_and_scrolls_the_page_up_and_down(
