@@ -97,7 +97,7 @@ class Studio(Suggesting):
         self._display = Ramtek9300() if display is None else display
         configuration = configuration_of(self._display)
         self._size = configuration.shown_lines, configuration.shown_elements
-        self._widgets = Widgets(self, *self._size)
+        self._widgets = Widgets(self, *self._size, self._limit)
         begun = perf_counter()
         self._rendering = self._rendered(scene, *self._size)
         self._shown = display_image(scene, self._rendering.picture)

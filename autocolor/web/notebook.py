@@ -34,6 +34,7 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
+from autocolor.budget import allowing
 from autocolor.checks import is_whole, shown
 from autocolor.errors import AutocolorError, InputError, UnavailableError, UsageError
 from autocolor.files.settings import scene_with
@@ -100,12 +101,13 @@ class EditedStudio(Protocol):
 
 
 class Widgets:
-    """The widgets of a studio with a display of so many lines and elements."""
+    """The widgets of a studio with a display of so many lines and elements, and its factor for memory."""
 
-    def __init__(self, studio: EditedStudio, lines: int, elements: int) -> None:
+    def __init__(self, studio: EditedStudio, lines: int, elements: int, limit: float) -> None:
         # A strong reference would be a circle, and a studio that is dropped would stay in memory.
         self._studio: EditedStudio = weakref.proxy(studio)
         self._size = lines, elements
+        self._limit = limit
         self._smooth = SMOOTH if SMOOTH**2 * lines * elements <= MOST_SAMPLES else 1
         self._widgets: list[AnyWidget] = []
         self._rendering: Rendering | None = None
@@ -151,7 +153,7 @@ class Widgets:
         except InputError:
             if self._smooth == 1:
                 raise
-            # The display shows the scene, but a sample between its pixels is too bright.
+            # The display shows the scene, but a sample between its pixels is too bright, or memory is short.
             self._smooth = 1
             image = self._render(scene)
         self._traits["picture"] = {
@@ -174,7 +176,8 @@ class Widgets:
         shown, smooth, (lines, elements) = self._studio.display_image, self._smooth, self._size
         picture, block = shown.picture, smooth * shown.block
         if shown.block == 1:
-            self._rendering = rendering(scene, smooth * lines, smooth * elements, self._rendering)
+            with allowing(self._limit):
+                self._rendering = rendering(scene, smooth * lines, smooth * elements, self._rendering)
             picture, block = self._rendering.picture, 1
         self._image = display_image(scene, picture, self._image, block)
         return self._image

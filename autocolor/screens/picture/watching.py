@@ -66,8 +66,9 @@ class Watching:
 
     def end(self) -> bool:
         """Show the rest of the picture at once; returns False if none was coming in."""
-        was_on, rest = self.is_on, self._words[self._done :]
-        if was_on:
-            self._display.send(instructions.write_image(rest, top=self._done))
+        was_on, done = self.is_on, self._done
+        # It has ended even if the display is lost.
         self._done = len(self._words)
+        if was_on:
+            self._display.send(instructions.write_image(self._words[done:], top=done))
         return was_on

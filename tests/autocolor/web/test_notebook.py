@@ -22,8 +22,10 @@ from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Scene, Studio, Surface, UnavailableError, render, scene_of
 from autocolor.arrays import AnyArray, Words
+from autocolor.budget import MEMORY
 from autocolor.files.settings import scene_with
 from autocolor.images import display_image
+from autocolor.rendering import BYTES_OF_PIXEL
 from autocolor.sending import shown_colors
 from autocolor.testing import colors
 from autocolor.web import notebook
@@ -294,6 +296,13 @@ def test_a_studio_whose_display_is_lost_answers_and_keeps_its_scene() -> None:
     assert cell.say({"edit": {OBJECT_COLOR: "#102030"}}) == "the display left"
     assert studio.scene is before
     assert np.array_equal(cell.field, field)
+
+
+def test_a_widget_has_no_more_samples_than_the_limit_of_its_studio_allows() -> None:
+    pixels = SMALL.lines * SMALL.elements
+    studio = Studio(car(), Ramtek9300(SMALL), limit=2 * BYTES_OF_PIXEL * pixels / MEMORY)
+    _, cell = shown_in(studio)
+    assert np.array_equal(cell.field, seen(studio, smooth=1))
 
 
 def test_a_scene_that_is_too_bright_between_the_pixels_of_the_display_is_shown_without_samples() -> None:
