@@ -26,6 +26,7 @@ from docs.generate.site import (
     place_of,
     place_of_name,
     target_of,
+    value_of,
 )
 from docs.guides import pictures, pictures_of_displays
 from docs.guides.pictures import GUIDES, path_of
@@ -212,6 +213,13 @@ def docstrings() -> Iterator[tuple[str, str]]:
             for member, inner in vars(value).items() if inspect.isclass(value) else ():
                 if not member.startswith("_") and (inspect.isroutine(inner) or isinstance(inner, property)):
                     yield f"{package.__name__}.{name}.{member}", inspect.getdoc(inner) or ""
+
+
+def test_every_keyword_of_a_public_function_is_in_its_docstring() -> None:
+    for function in filter(inspect.isfunction, (value_of(name) for name in PUBLIC)):
+        keywords = inspect.signature(function).parameters.keys() - {"path", "overwrite"}
+        text = inspect.getdoc(function) or ""
+        assert not [each for each in keywords if not re.search(rf"\b{each}s?\b", text)], function
 
 
 def test_examples_in_public_docstrings_are_indented_as_code() -> None:

@@ -21,7 +21,7 @@ from pathlib import Path
 from posixpath import dirname, join, normpath, relpath, splitext
 from typing import Any, Final
 
-from PIL import Image
+from PIL import Image, ImageOps
 
 import autocolor
 import ramtek_emu
@@ -65,7 +65,7 @@ CARD: Final = r"""
 
     **\1**
 
-    [Script](../\4) · Download the [picture](\3){download=""} or the <a href="source/\4" download>script</a>
+    [Script](../\4) · Download: [picture](\3){download=""}, <a href="source/\4" download>script</a>
 """
 
 CODE: Final = re.compile(
@@ -201,8 +201,8 @@ def collect() -> None:
         write(place_of_name(name), f"[Python](../../../api.md) / `{name}`\n\n::: {name}\n".encode())
     for _, _, picture, _ in ENTRY.findall(texts["docs/gallery.md"]):
         with Image.open(FOLDER / picture) as image:
-            image.thumbnail((640, 480))
-            image.save(FOLDER / f"{picture}.thumb.webp")
+            thumbnail = ImageOps.fit(image.convert("RGB"), (480, 360))
+        thumbnail.save(FOLDER / f"{picture}.thumb.webp")
     # The live coupe turns; its picture is shown before the page is loaded.
     autocolor.save_page(FOLDER / "coupe.html", autocolor.demo(), views=12, overwrite=True)
     (poster,) = POSTER.findall((FOLDER / "coupe.html").read_text("utf-8"))
