@@ -187,7 +187,7 @@ def collect() -> None:
     """Write the whole folder of pages."""
     texts = documents()
     shutil.rmtree(FOLDER, ignore_errors=True)
-    own = shutil.ignore_patterns("*.md", "*.py", "__pycache__", "generate")
+    own = shutil.ignore_patterns("*.md", "*.py", "__pycache__", "generate", "404.html")
     shutil.copytree(ROOT / "docs", FOLDER, ignore=own)
     for document, text in texts.items():
         write(place_of(document), page_of(document, text).encode())
@@ -215,10 +215,10 @@ def main() -> None:
     collect()
     command = [sys.executable, "-m", "zensical", "build", "--clean", "--strict"]
     subprocess.run(command, cwd=ROOT, check=True)
-    # The server may have the site in a folder, and may show this page for any address.
-    shutil.copy(ROOT / "docs" / "assets" / "404.html", SITE)
     if "SITE_URL" not in os.environ:
         (SITE / "sitemap.xml").unlink()
+        # Its links are right in any folder of a server, and those of the theme's page are not.
+        shutil.copy(ROOT / "docs" / "assets" / "404.html", SITE)
 
 
 if __name__ == "__main__":
