@@ -50,10 +50,10 @@ from autocolor.rendering import Rendering, block_for, blocks_of, rendering, sees
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import LEVELS, NORMALS, Scene, cost_of_edit, unseen_recoloring
-from autocolor.sending import send_image, shown_colors
+from autocolor.sending import configuration_of, send_image, shown_colors
 from autocolor.threads import alone, for_one_thread
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
-from autocolor.web.notebook import WidgetPort
+from autocolor.web.notebook import Widgets
 from ramtek_emu import HostPort, Ramtek9300
 
 if TYPE_CHECKING:
@@ -95,8 +95,9 @@ class Studio(Suggesting):
         self._history = scene if isinstance(scene, History) else History(scene)
         scene = self._history.scene
         self._display = Ramtek9300() if display is None else display
-        self._port = WidgetPort(self, self._display)
-        self._size = self._port.configuration.shown_lines, self._port.configuration.shown_elements
+        configuration = configuration_of(self._display)
+        self._size = configuration.shown_lines, configuration.shown_elements
+        self._widgets = Widgets(self, *self._size)
         begun = perf_counter()
         self._rendering = self._rendered(scene, *self._size)
         self._shown = display_image(scene, self._rendering.picture)
@@ -325,7 +326,7 @@ class Studio(Suggesting):
         """Compute a coarse picture again at all lines and elements, and send it; the scene stays."""
         if self.is_coarse:
             self._show(self.scene, Tier.FRAME)
-            self._port.refresh()
+            self._widgets.refresh()
 
     def undo(self, steps: int = 1) -> bool:
         """Undo the last step, or some steps at once; returns False if there are not so many.
@@ -560,8 +561,8 @@ class Studio(Suggesting):
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
-        send_image(self._port, self._shown)
-        self._port.refresh()
+        send_image(self._display, self._shown)
+        self._widgets.refresh()
 
     def view_window(self, *, full_screen: bool = False, fit: bool = False) -> None:
         """Edit the scene in an interactive window until the user closes it; F1 there lists the keys.
@@ -580,11 +581,12 @@ class Studio(Suggesting):
     def widget(self) -> AnyWidget:
         """A widget for a notebook, which shows the studio and edits it: an `anywidget.AnyWidget`.
 
-        It receives the words and entries that the studio sends to its display. What is done in the widget is
-        an edit of the studio, which `undo` undoes, and every edit shows in all widgets of the studio. `close`
-        ends a widget. Raises UnavailableError without the package anywidget (extra `notebook`).
+        It shows the scene with smooth edges, by words and entries, whatever the display is. What is done in
+        the widget is an edit of the studio, which `undo` undoes, and every edit shows in all widgets of the
+        studio. `close` ends a widget. Raises UnavailableError without the package anywidget (extra
+        `notebook`).
         """
-        return self._port.new_widget()
+        return self._widgets.new()
 
     def _move(self, way: Way, steps: int = 1) -> bool:
         """Move some steps on a way of the timeline; returns False if there are not so many."""
@@ -605,7 +607,7 @@ class Studio(Suggesting):
         """Show a scene, then note the step in the history, and refresh the widgets."""
         self._show(scene, costs or cost_of_edit(self.scene, scene) or Tier.NOTHING, moving)
         note()
-        self._port.refresh()
+        self._widgets.refresh()
 
     def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
         """Compute and send the difference to another scene. An error leaves the session unchanged."""
@@ -622,7 +624,7 @@ class Studio(Suggesting):
                 rendered = self._rendered(scene, lines, elements, rendered)
         now = display_image(scene, rendered.picture, before, block)
         if self.sends:
-            send_image(self._port, now, before)
+            send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun

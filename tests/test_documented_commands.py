@@ -51,14 +51,6 @@ INPUTS = {
     "engine.ply": "ply\nformat ascii 1.0\nelement vertex 4\n"
     + "".join(f"property float {axis}\n" for axis in "xyz")
     + f"element face 4\nproperty list uchar int vertex_indices\nend_header\n{NODES}{POLYGONS}",
-    "housing.stl": "solid housing\n"
-    + "".join(
-        "facet normal 0 0 0\nouter loop\n"
-        + "".join("vertex {} {} {}\n".format(*CORNERS[node]) for node in face)
-        + "endloop\nendfacet\n"
-        for face in FACES
-    )
-    + "endsolid housing\n",
     "car.obj": "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "g hood\nf 1 2 4\ng floor\nf 1 3 2\n",
     "tour.csv": 'name,time,view.eye,lights.key.intensity\nstart,0,"[-6.9, -5.1, 2.1]",\n'
     'low,3,"[-7.5, 0, 0.9]",0.4\nend,4,"[-6.9, 5.1, 2.1]",\n',

@@ -15,6 +15,7 @@ from PIL import Image
 
 import autocolor
 import ramtek_emu
+from docs.generate.blocks import blocks_of
 from docs.generate.site import (
     EXAMPLES,
     PAGES,
@@ -231,10 +232,11 @@ MOST_BYTES = 60_000
 CLOSE = 1.0
 """The mean difference of components. Fewer colors make 0.25 of it, and a missing drag at least 5."""
 
+LOSSY = 1.5
+"""The mean difference of components, as above, for WebP files that are not lossless."""
+
 SCREENS = [picture for picture in PICTURES if "open_viewer" in inspect.getsource(picture)]
-DRAWN = [
-    picture for picture in PICTURES if re.search(r"upper_half|played|Inspector\(", inspect.getsource(picture))
-]
+DRAWN = [picture for picture in PICTURES if re.search(r"upper_half|Inspector\(", inspect.getsource(picture))]
 """The pictures of the listings in display.md and inspect.md. They have few colors, so no color is lost."""
 
 
@@ -249,6 +251,27 @@ def test_every_picture_is_in_its_guide() -> None:
     for picture in PICTURES:
         guide = GUIDES / f"{picture.__name__.partition('_')[0]}.md"
         assert f"](images/{path_of(picture).name})" in guide.read_text("utf-8")
+
+
+BLOCKS = [block.text for block in blocks_of((GUIDES / "cookbook.md").read_text("utf-8"))]
+RECIPES = pictures.recipes()
+
+
+def test_each_script_of_the_cookbook_has_a_picture_and_at_most_ten_lines() -> None:
+    assert [*RECIPES.values()] == BLOCKS
+    assert len(RECIPES) == 20
+    assert max(len([line for line in text.splitlines() if line]) for text in BLOCKS) <= 10
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_a_script_of_the_cookbook_writes_its_picture(name: str, tmp_path: Path) -> None:
+    made = pictures.cooked(name, tmp_path)
+    with Image.open(GUIDES / "images" / f"cookbook-{name}.webp") as image:
+        assert max(image.size) <= pictures.RECIPE[0]
+        saved = np.asarray(image.convert("RGBA").convert("RGBa"), np.int16)
+    if made.suffix != ".html":
+        now = np.asarray(pictures.small_frames(made)[0].convert("RGBA").convert("RGBa"), np.int16)
+        assert np.abs(saved - now).mean() < LOSSY, f"run: python -m docs.guides.pictures cookbook_{name}"
 
 
 @pytest.mark.parametrize("picture", first(2, SCREENS), ids=lambda picture: picture.__name__)

@@ -1405,14 +1405,17 @@ function mixer(desk, syncs, key, what) {
     spellcheck: "false",
     autocomplete: "off",
     "aria-label": `The ${what} as #rrggbb or a name of CSS`,
-    onchange() {
-      const digits = cssColor(text.value);
-      text.toggleAttribute("aria-invalid", !digits);
-      if (digits) desk.edit({ [key]: digits });
-      else desk.say(`A color must be “#rrggbb”, or a name such as “navy”, not “${text.value.slice(0, 40)}”.`);
-      if (digits) text.value = digits;
-    },
+    onchange: take,
+    // JupyterLab takes Enter for itself, and then nothing changes.
+    onkeydown: (/** @type {KeyboardEvent} */ press) => press.key === "Enter" && take(),
   });
+  function take() {
+    const digits = cssColor(text.value);
+    text.toggleAttribute("aria-invalid", !digits);
+    if (digits) desk.edit({ [key]: digits });
+    else desk.say(`A color must be “#rrggbb”, or a name such as “navy”, not “${text.value.slice(0, 40)}”.`);
+    if (digits) text.value = digits;
+  }
   syncs.push(() => {
     const digits = String(desk.state[key]);
     picker.value = digits;
@@ -1652,11 +1655,12 @@ export default {
 
     function hear(/** @type {any} */ message) {
       if (typeof message?.answer !== "string" || messages.length === 0) return;
-      messages.shift();
+      const answered = messages.shift();
       sendFirst();
       if (message.answer) changed.add("picture");
       show();
       if (message.answer) handle.say(message.answer);
+      else if (answered.undo || answered.redo) handle.say(answered.undo ? "Undone." : "Redone.");
       else if (isLate) handle.say("The studio has answered.");
       isLate = false;
     }

@@ -150,7 +150,7 @@ def export_of(
     values |= {
         "smooth": picture.smooth,
         "words": _text(packed_words(image.words)),
-        "legend": _legend_values(image, picture.smooth),
+        "legend": legend_values(image, picture.smooth),
         "variants": _variant_values(image, values, variants, lights),
         "lights": _light_values(image) if lights else None,
     }
@@ -204,7 +204,7 @@ def check_canvas(elements: int, lines: int, views: int = 1) -> None:
 def values_of(image: DisplayImage) -> dict[str, Any]:
     """Everything about an image but its words and entries, as values that JSON can hold.
 
-    Nothing is smooth, the words contain the legend, if any, and there are no variants and no lights.
+    Nothing is smooth, and there are no legend, no variants and no lights.
     """
     scene, (lines, elements) = image.scene, image.words.shape
     surfaces = []
@@ -285,7 +285,7 @@ def _text(data: bytes) -> str:
     return b64encode(data).decode("ascii")
 
 
-def _legend_values(image: DisplayImage, smooth: int) -> dict[str, Any] | None:
+def legend_values(image: DisplayImage, smooth: int) -> dict[str, Any] | None:
     """The area and the words of the legend, at the size of the samples of a smooth picture; None without."""
     small = middles(image, smooth)
     key = legend(small)

@@ -3,13 +3,16 @@
 Each function of PICTURES returns a picture, which is named after the function. To write some pictures only,
 name their functions: `python -m docs.guides.pictures light_place`. A picture of results runs the commands of
 its guide, and shows what they wrote. A picture of a screen is the field of a display, after the steps of the
-guide were done with the joystick unit.
+guide were done with the joystick unit. A picture of the cookbook is the image that its script writes, at most
+320 wide; the page of the cookbook is a picture of `pictures_of_scenes`, because it needs a browser.
 """
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import chdir
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -33,6 +36,13 @@ IMAGES: Final = GUIDES / "images"
 COLORS: Final = 255
 """The most colors of a picture: a pixel is then a byte."""
 
+QUALITY: Final = 94
+FILM_QUALITY: Final = 75
+"""The quality of the WebP files of the cookbook: of pictures, and of films, which are larger."""
+
+RECIPE: Final = (320, 240)
+"""The largest size of a picture of the cookbook."""
+
 SMALL: Final = 2
 """A panel has this part of the lines and elements of a result."""
 
@@ -49,7 +59,7 @@ EXPLAINED: Final = (240, 200)
 def start_paint() -> Field:
     """The coupe, and the recolored coupe."""
     results = results_of("start")
-    return np.hstack([results["coupe"][CAR], results["metallic"][CAR]])
+    return np.hstack([results["coupe"][CAR], results["blue"][CAR]])
 
 
 def start_menu() -> Field:
@@ -83,8 +93,8 @@ def light_place() -> Field:
 
 
 def light_spot() -> Field:
-    """The key light as a flood, concentrated, in a cone, and in a soft cone."""
-    return sheet("light", ("flood", "concentrated", "cone", "soft"))
+    """The key light concentrated, in a cone, and in a soft cone."""
+    return sheet("light", ("concentrated", "cone", "soft"), across=3)
 
 
 def light_flaps() -> Field:
@@ -217,5 +227,57 @@ def write(pictures: Sequence[Callable[[], Field]]) -> None:
             print(path, path.stat().st_size)
 
 
+# The cookbook.
+
+
+def recipes() -> dict[str, str]:
+    """The scripts of the cookbook, by the names of their pictures: `images/cookbook-film.webp` is "film"."""
+    text = (GUIDES / "cookbook.md").read_text("utf-8")
+    found = re.findall(
+        r"^```python\n(.*?)^```\n\n!\[.*?\]\(images/cookbook-(\w+)\.webp\)$", text, re.DOTALL | re.M
+    )
+    return {name: code for code, name in found}
+
+
+def cooked(name: str, folder: Path) -> Path:
+    """Run a script of the cookbook in a folder; returns the file that it must have written."""
+    (folder / "scenes").symlink_to(ROOT / "scenes", target_is_directory=True)
+    with chdir(folder):
+        exec(compile(recipes()[name], name, "exec"), {})
+    return next(path for suffix in ("png", "webp", "html") if (path := folder / f"{name}.{suffix}").exists())
+
+
+def small_frames(path: Path) -> list[Image.Image]:
+    """The frames of an image file, at most as large as `RECIPE`."""
+    with Image.open(path) as file:
+        frames = []
+        for number in range(getattr(file, "n_frames", 1)):
+            file.seek(number)
+            frame = file.convert("RGBA" if file.mode == "RGBA" else "RGB")
+            frame.thumbnail(RECIPE, Image.Resampling.BOX)
+            frames.append(frame)
+    return frames
+
+
+def write_recipes() -> None:
+    """Write the pictures of the cookbook that the command line names, such as cookbook_film, or all."""
+    for name in recipes():
+        if f"cookbook_{name}" in sys.argv[1:] or len(sys.argv) == 1:
+            with TemporaryDirectory() as folder:
+                made = cooked(name, Path(folder))
+                if made.suffix == ".html":
+                    continue
+                first, *others = small_frames(made)
+            path = IMAGES / f"cookbook-{name}.webp"
+            film = (
+                {"save_all": True, "append_images": others, "duration": first.info["duration"]}
+                if others
+                else {}
+            )
+            first.save(path, quality=FILM_QUALITY if others else QUALITY, method=6, **film)
+            print(path, path.stat().st_size)
+
+
 if __name__ == "__main__":
     write(PICTURES)
+    write_recipes()

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import doctest
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -23,6 +24,7 @@ from PIL import Image
 
 import autocolor
 from docs.generate.blocks import blocks_of
+from docs.generate.commands import ROOT
 from docs.guides.pictures import GUIDES, write
 from ramtek_emu import Ramtek9300
 from ramtek_emu.inspection.inspector import Inspector
@@ -53,18 +55,12 @@ def names_after(guide: str) -> dict[str, Any]:
     return examples.globs
 
 
-def played(*names: str, more: str = "") -> Ramtek9300:
-    """The display after some listings, and after `more` lines of a listing."""
-    display = Ramtek9300("family")
-    lines = [line for name in names for line in listings()[name].splitlines()]
-    stream = b"".join(assemble([*lines, *more.splitlines()]))
-    display.send(np.frombuffer(stream, "<u2"))
-    return display
-
-
 def upper_half(name: str) -> Field:
     """The upper half of the field that a listing leaves on the display that is switched on."""
-    return played("colors", name).field()[:240]
+    display = Ramtek9300("family")
+    lines = [line for each in ("colors", name) for line in listings()[each].splitlines()]
+    display.send(np.frombuffer(b"".join(assemble(lines)), "<u2"))
+    return display.field()[:240]
 
 
 def display_areas() -> Field:
@@ -95,12 +91,6 @@ def display_images() -> Field:
 def display_cursors() -> Field:
     """Two cursors over a box."""
     return upper_half("cursors")
-
-
-def display_view() -> Field:
-    """The page of text by view.txt, and again with the lines from the bottom."""
-    fields = (played("colors", "text", "view", more=more).field() for more in ("", "SELVO #1"))
-    return beside(*(field[::2, ::2] for field in fields))
 
 
 def display_ball() -> Field:
@@ -199,9 +189,8 @@ def elsewhere_lights() -> Field:
 def simulated(folder: Path) -> str:
     """Run the simulator of emulators.md in a folder, which gets lines.png; returns what it prints."""
     blocks = blocks_of((GUIDES / "emulators.md").read_text("utf-8"))
-    (listing,) = (block.text for block in blocks if block.text.startswith("; lines.ini"))
     (commands,) = (block.text for block in blocks if block.language == "sh")
-    (folder / "lines.ini").write_text(listing, "utf-8")
+    shutil.copy(ROOT / "examples" / "lines.ini", folder)
     path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
     with subprocess.Popen(
         ["sh", "-c", commands],
@@ -244,7 +233,7 @@ def inspect_pixel() -> Field:
 
 PICTURES: Final[Sequence[Callable[[], Field]]] = (
     display_areas, display_lines, display_curves, display_text, display_images, display_cursors,
-    display_view, display_ball, display_stripes, inspect_pixel,
+    display_ball, display_stripes, inspect_pixel,
     paper_1983, paper_terms, paper_controls, paper_words, paper_blends,
     elsewhere_lights, emulators_lines,
 )  # fmt: skip

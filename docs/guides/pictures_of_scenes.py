@@ -2,7 +2,8 @@
 
 `python -m docs.guides.pictures_of_scenes` writes them all to docs/guides/images, in about ten seconds, and
 `python -m docs.guides.pictures_of_scenes scalar_hills` writes one. The panels are smaller than the
-pictures of the commands. `paint_page` needs playwright and Debian's Chromium.
+pictures of the commands. `paint_page` and `cookbook_page` need playwright
+and Debian's Chromium.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from PIL import Image
 
 from autocolor import Mesh, Scene, image, scene_of
 from docs.generate.commands import ROOT, here
+from docs.guides.pictures import cooked
 from scenes.figures import Field, captioned
 
 IMAGES: Final = Path(__file__).parent / "images"
@@ -55,10 +57,10 @@ def main() -> None:
 def paint_recolored(place: Path, path: Path) -> None:
     """A picture file in three paints."""
     ran(place, f"render {COUPE} {PANEL} --save coupe.npz -o coupe.png")
-    ran(place, "recolor coupe.npz body --object navy --blend 0 -o metallic.png")
+    ran(place, "recolor coupe.npz body --object '#0a3cc8' --blend 0.7 -o blue.png")
     ran(place, "recolor coupe.npz body --ramp '#200,#f60,#fff' -o glowing.png")
-    captions = ("As rendered", "Navy, blend 0", "A ramp of three colors")
-    save(path, row_of([place / f"{name}.png" for name in ("coupe", "metallic", "glowing")], captions))
+    captions = ("As rendered", "#0a3cc8, blend 0.7", "A ramp of three colors")
+    save(path, row_of([place / f"{name}.png" for name in ("coupe", "blue", "glowing")], captions))
 
 
 def paint_sheet(place: Path, path: Path) -> None:
@@ -80,21 +82,32 @@ def paint_fade(place: Path, path: Path) -> None:
 
 def paint_page(place: Path, path: Path) -> None:
     """The page of the coupe with its lights and a strip of variants, in a browser."""
-    from playwright.sync_api import sync_playwright
-
     ran(place, f"render {COUPE} --save coupe.npz")
     vary = "--vary surfaces.body.object_color=navy,silver,goldenrod"
     ran(place, f"page coupe.npz --lights {vary} -o coupe.html")
+    save(path, screenshot(place / "coupe.html", 1000, 700))
+
+
+def cookbook_page(place: Path, path: Path) -> None:
+    """The page of the cookbook in a browser, at a third of its size."""
+    window = Image.fromarray(screenshot(cooked("page", place), 960, 720))
+    save(path, np.asarray(window.reduce(3)))
+
+
+def screenshot(page: Path, width: int, height: int) -> Field:
+    """A page in Debian's Chromium."""
+    from playwright.sync_api import sync_playwright
+
     with sync_playwright() as browsers:
         browser = browsers.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
-        window = browser.new_page(viewport={"width": 1000, "height": 700}, color_scheme="light")
-        window.goto((place / "coupe.html").as_uri())
+        window = browser.new_page(viewport={"width": width, "height": height}, color_scheme="light")
+        window.goto(page.as_uri())
         window.wait_for_selector("canvas")
         # The page draws its variants while it is idle.
         window.wait_for_timeout(2000)
-        window.screenshot(path=place / "page.png")
+        window.screenshot(path=page.with_suffix(".png"))
         browser.close()
-    save(path, field_of(place / "page.png"))
+    return field_of(page.with_suffix(".png"))
 
 
 def mesh_parts(place: Path, path: Path) -> None:
@@ -163,6 +176,7 @@ PICTURES: Final[tuple[Callable[[Path, Path], None], ...]] = (
     paint_sheet,
     paint_fade,
     paint_page,
+    cookbook_page,
     mesh_parts,
     mesh_creases,
     scalar_stress,
