@@ -20,8 +20,8 @@ def main() -> None:
     view = coupe.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
     # The floor keeps what only the ambient light reaches from going black.
     shown: dict[str, Any] = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
-    shown["exposure"] = {"floor": (0.12, 0.7)}
-    studio = open_studio(coupe.replace(lights=(side,), view=view, **shown))
+    shown["exposure"] = {"stage": (0.12, 0.7)}
+    studio = open_studio(coupe.replace(lights=(side,), view=view, stage="floor", **shown))
     sheet = Sheet("09")
     sheet.add(studio, "A. No Flaps", "a")
     studio.light("flapped", flaps={"z": {"minimum": CREASE}})

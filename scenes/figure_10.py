@@ -29,7 +29,7 @@ def main() -> None:
     studio = open_scene("coupe")
     spot = autocolor.Light("spot", (-5.0, -4.0, 5.0), aim=(-0.9, -0.3, 0.8), concentration=6)
     shown: dict[str, Any] = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
-    shown["exposure"] = {"floor": (0.12, 0.7)}
+    shown["exposure"] = {"stage": (0.12, 0.7)}
     studio.edit(studio.scene.replace(lights=(spot,), **shown))
     for panel, angle, caption in ON_THE_COUPE:
         studio.light("spot", cone_angle=angle)

@@ -39,11 +39,12 @@ ZEBRA: Final[dict[str, Any]] = {
     "limits": None,
     "scale": "zebra",
     "bands": 2,
+    "shades": 1,
     "stripes": 16,
     "direction": (1.0, 0.0, 0.0),
     "legend": False,
 }
-"""Lamps along the car, whose reflections run from the nose to the tail."""
+"""Lamps along the car, whose reflections run from the nose to the tail: black and white, without shading."""
 
 
 def main() -> None:
@@ -60,6 +61,7 @@ def main() -> None:
     studio.edit(studio.scene.replace(exposure={**dict(held), "body": (0.0, BRIGHTEST)}))
     studio.scalar(**MEAN)
     sheet.add(studio, "B. Mean Curvature in 1/m", "b")
+    studio.edit(studio.scene.replace(stage="none"))
     studio.scalar(**ZEBRA)
     sheet.add(studio, "C. Zebra Stripes", "c")
     sheet.write(across=3)

@@ -13,7 +13,7 @@ from scenes.figures import Field, Sheet, open_studio, read_scene
 ON_THE_COUPE: Final = {
     "A. On the Front of the Hood": (240, 110),
     "B. Below the Windshield": (200, 255),
-    "C. At the Edge of the Hood": (262, 245),
+    "C. At the Edge of the Hood": (258, 245),
 }
 """Lines and elements of the pixels."""
 
@@ -43,9 +43,8 @@ def marked(field: Field, line: int, element: int) -> Field:
 def main() -> None:
     """Render once for each object; each panel places the highlight of the one light."""
     sheet = Sheet("highlight")
-    # The light from behind, beside the three others; its flap keeps it off the floor.
-    coupe = read_scene("coupe")
-    coupe = coupe.with_light("back", name="lamp", flaps={"x": None, "z": {"minimum": 0.01}})
+    # The light from behind, beside the three others.
+    coupe = read_scene("coupe").with_light("back", name="lamp")
     pyramid = read_scene("pyramid").replace(ambient=0.2, contrast="floor")
     pyramid = pyramid.with_light("lamp", aim=(0.5, 0.0, 0.9), concentration=4)
     pyramid = pyramid.with_surface("pyramid", specular=0.8, exponent=40)
@@ -53,8 +52,7 @@ def main() -> None:
         studio = open_studio(scene)
         for caption, (line, element) in places.items():
             studio.place_highlight("lamp", line * figures.SMOOTH, element * figures.SMOOTH)
-            place = line // sheet.reduction, element // sheet.reduction
-            sheet.add(marked(sheet.panel_of(studio), *place), caption, caption[0].lower())
+            sheet.add(marked(sheet.panel_of(studio), line, element), caption, caption[0].lower())
     sheet.write(across=3)
 
 

@@ -17,7 +17,7 @@ LACQUER: Final = 1.5
 SURFACES: Final[dict[str, dict[str, Any]]] = {
     "body": {"specular": 0.15, "exponent": 40, "blend": 0.65},
     "glass": {"specular": 0.2},
-    "floor": {"specular": 0.11, "exponent": 30, "light_color": "#d0d8e0"},
+    "stage": {"specular": 0.11, "exponent": 30, "light_color": "#d0d8e0"},
 }
 """What is lacquered or wet. Of so small an S little is seen unless it grows."""
 

@@ -47,7 +47,7 @@ def coupe() -> autocolor.Scene:
         autocolor.Light("front", (-300.0, -200.0, 200.0), 0.55),
     )
     view = scene.view.replace(eye=(-110.4, -83.6, 28.0), field_of_view=1.5)
-    return scene.replace(lights=lights, view=view, **SHOWN).with_surface("floor", light_color="#5c6670")
+    return scene.replace(lights=lights, view=view, **SHOWN).with_surface("stage", light_color="#5c6670")
 
 
 def angles() -> Iterator[float]:

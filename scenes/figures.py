@@ -4,7 +4,7 @@ Paper: D. R. Warn, "Lighting Controls for Synthetic Images", Figures 4 to 10 and
 introduction: a machined part with its stress, and the curvature of a body; and what grew from its asides,
 such as S that grows with the angle of incidence. Each script renders once, then relights or recolors for
 every panel, and writes labeled pictures into `figures/`, or into the folder that it is given:
-`python -m scenes.figure_04 elsewhere`. `python -m scenes.figures docs/figures --small` makes all pictures of
+`python -m scenes.figure_04 elsewhere`. `python -m scenes.figures docs/figures --webp` makes all pictures of
 docs/gallery.md.
 
 Pictures have smooth edges: they are rendered at SMOOTH times their lines and elements, and averaged. Figures
@@ -20,12 +20,13 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
-from typing import Final
 from unittest import mock
 
 import numpy as np
 import numpy.typing as npt
+from PIL import Image
 
 import autocolor
 from autocolor.images import averaged, smoothed
@@ -44,9 +45,6 @@ CAPTION_LINES = 26
 
 SMOOTH = 4
 """Lines and elements that are rendered for each of a figure. Chosen by looking at the edges of the coupe."""
-
-SMALL: Final = 2
-"""Panels of small figures have this part of the lines and elements."""
 
 Field = npt.NDArray[np.uint8]
 
@@ -120,10 +118,10 @@ def captioned(field: Field, text: str, size: int = 2) -> Field:
 
 
 def parser_of(module: str, description: str) -> argparse.ArgumentParser:
-    """The command line of a script in this folder: where its pictures go, and how large they are."""
+    """The command line of a script in this folder: where its pictures go, and in which files."""
     parser = argparse.ArgumentParser(prog=f"python -m scenes.{module}", description=description)
     parser.add_argument("folder", nargs="?", type=Path, default=Path("figures"), help="default: %(default)s")
-    parser.add_argument("--small", action="store_true", help="write figures of half as large panels")
+    parser.add_argument("--webp", action="store_true", help="write a figure as one lossless WebP file")
     return parser
 
 
@@ -137,45 +135,48 @@ def parser_of_figure(figure: str) -> argparse.ArgumentParser:
 class Sheet:
     """The panels of one figure: each is written alone, and all of them side by side at the end.
 
-    Small panels are written side by side alone.
+    With `--webp`, the panels are only written side by side.
     """
 
     def __init__(self, figure: str, options: argparse.Namespace | None = None) -> None:
         options = options or parser_of_figure(figure).parse_args()
         self.figure = figure
         self.folder: Path = options.folder
-        self.reduction: int = SMALL if options.small else 1
-        """A panel has this part of the lines and elements of a display."""
+        self.webp: bool = options.webp
         self.panels: list[Field] = []
 
     def panel_of(self, shown: autocolor.Studio | Ramtek9300) -> Field:
         """A studio, or what its display shows, at the size of a panel, with smooth edges."""
-        squares = SMOOTH * self.reduction
         if isinstance(shown, autocolor.Studio):
-            return smoothed(shown.display_image, squares)
-        return averaged(shown.entries, shown.words, squares)
+            return smoothed(shown.display_image, SMOOTH)
+        return averaged(shown.entries, shown.words, SMOOTH)
 
     def add(self, shown: autocolor.Studio | Field, caption: str, panel: str = "") -> None:
         """Write a panel with its caption: a studio, or a field as it is, such as the field of a screen."""
         field = shown if isinstance(shown, np.ndarray) else self.panel_of(shown)
-        self.panels.append(captioned(field, caption, 2 * field.shape[1] // GMR_9300.elements))
-        if not (panel and self.reduction > 1):
-            self._write(self.panels[-1], f"figure-{self.figure}{f'-{panel}' if panel else ''}.png")
+        self.panels.append(captioned(field, caption))
+        if not (panel and self.webp):
+            self._write(self.panels[-1], f"figure-{self.figure}{f'-{panel}' if panel else ''}")
 
     def write(self, across: int) -> None:
         """Write all panels in rows of so many."""
         rows = [
             np.hstack(self.panels[first : first + across]) for first in range(0, len(self.panels), across)
         ]
-        self._write(np.vstack(rows), f"figure-{self.figure}.png")
+        self._write(np.vstack(rows), f"figure-{self.figure}")
 
     def _write(self, field: Field, name: str) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
-        if self.reduction > 1:
-            # Components that are off by 1 at most are not seen, and take a third less space.
-            field = ((field.astype(np.uint16) + 1) // 3 * 3).astype(np.uint8)
-        write_atomically(self.folder / name, png_bytes(field), overwrite=True)
-        print(self.folder / name)
+        path = self.folder / f"{name}{'.webp' if self.webp else '.png'}"
+        write_atomically(path, webp_bytes(field) if self.webp else png_bytes(field), overwrite=True)
+        print(path)
+
+
+def webp_bytes(field: Field) -> bytes:
+    """A field as a lossless WebP file."""
+    file = BytesIO()
+    Image.fromarray(field).save(file, "WEBP", lossless=True, quality=100, method=6)
+    return file.getvalue()
 
 
 def main() -> None:

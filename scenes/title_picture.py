@@ -20,13 +20,13 @@ from ramtek_emu.films import write_film
 
 PATH: Final = Path(__file__).parents[1] / "docs" / "recolor.webp"
 
-COLORS_OF_FILM: Final = ("#b12", "#24c", "#ccd", "#164", "#b12")
-FRAMES: Final = 24
-RATE: Final = 8.0
+COLORS_OF_FILM: Final = ("#e8142a", "#1c46d0", "#c8ccd4", "#0c7040", "#e8142a")
+FRAMES: Final = 14
+RATE: Final = 5.0
 """The object colors of the body, one after the other; frames, and frames a second."""
 
-LINES: Final = 300
-ELEMENTS: Final = 400
+LINES: Final = 480
+ELEMENTS: Final = 640
 STRIP: Final = 20
 """Lines of the strip with the table, below the picture."""
 

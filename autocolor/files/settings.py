@@ -203,6 +203,6 @@ def value_at(scene: Scene, place: SettingPlace) -> Any:
     >>> from autocolor import demo
     >>> scene = demo()
     >>> value_at(scene, place_of(scene, "surfaces.body.exponent"))
-    80.0
+    90.0
     """
     return field_and_value(_class_of(place), row_at(scene, place), place.path)[1]

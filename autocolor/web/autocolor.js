@@ -38,6 +38,8 @@
 /** @typedef {Uint16Array<ArrayBuffer>} Words */
 
 const ENTRIES = 1024;
+/** So many pixels of the screen a click may move before it is a drag. */
+const NEAR = 6;
 const COUNT = new Intl.NumberFormat("en");
 const PAINT = /** @type {const} */ (["object_color", "light_color", "blend", "light_percentage", "ramp"]);
 
@@ -796,7 +798,8 @@ async function build(root, picture, options) {
   const glass = glassOf(picture, words, entries, legend);
   const relight = await relighting(picture, words, glass.owner);
   const first = stateOf(picture);
-  const hint = `${views.length ? "Drag the picture to turn it. " : ""}Click a surface, and choose its paint.`;
+  const turns = views.length ? "Drag the picture to turn it, or press the arrow keys. " : "";
+  const hint = `${turns}Click a surface, and choose its paint.`;
   const status = make("p", { class: "status", role: "status" }, hint);
 
   /** @type {State[]} */
@@ -929,6 +932,8 @@ async function build(root, picture, options) {
     if (view !== asked) return;
     desk.view = view;
     const changed = glass.turn(next);
+    // An outline that is fading away belongs to the view before.
+    for (const fading of glass.outline.getAnimations()) fading.cancel();
     old?.turn(view ? next : before);
     point(-1);
     const { name } = views[view];
@@ -975,20 +980,23 @@ async function build(root, picture, options) {
   /** Where a drag began, until it ends. @type {{x: number, view: number, isDrag: boolean} | null} */
   let from = null;
   let dragged = false;
+  /** Where a button was pressed last. @type {[number, number]} */
+  let pressed = [0, 0];
   const release = () => {
     dragged = from?.isDrag ?? false;
     from = null;
     if (dragged) writeFragment();
   };
   const listeners = {
-    pointerdown(/** @type {PointerEvent} */ { isPrimary, button, clientX }) {
+    pointerdown(/** @type {PointerEvent} */ { isPrimary, button, clientX, clientY }) {
       dragged = false;
+      pressed = [clientX, clientY];
       if (isPrimary && button === 0 && views.length) from = { x: clientX, view: asked, isDrag: false };
     },
     pointermove(/** @type {PointerEvent} */ event) {
       if (from && event.buttons) {
         const share = (event.clientX - from.x) / glass.canvas.clientWidth;
-        if (!from.isDrag && Math.abs(event.clientX - from.x) > 6) {
+        if (!from.isDrag && Math.abs(event.clientX - from.x) > NEAR) {
           from.isDrag = true;
           glass.canvas.setPointerCapture(event.pointerId);
         }
@@ -999,7 +1007,8 @@ async function build(root, picture, options) {
     pointercancel: release,
     pointerleave: () => point(-1),
     click(/** @type {PointerEvent} */ event) {
-      if (!dragged && surfaceAt(event) >= 0) desk.choose(surfaceAt(event));
+      const moved = Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]);
+      if (!dragged && moved <= NEAR && surfaceAt(event) >= 0) desk.choose(surfaceAt(event));
     },
   };
   for (const [name, listener] of Object.entries(listeners))
@@ -1150,7 +1159,7 @@ function paints(desk) {
       ramp: null,
       object_color: cssColor(`hsl(${hue} ${random(30, 95)}% ${random(15, 60)}%)`),
       light_color: cssColor(`hsl(${hue + random(-90, 90)} ${random(20, 100)}% ${random(80, 95)}%)`),
-      blend: Math.round(random(0, 65)) / 100,
+      blend: Math.round(random(25, 80)) / 100,
     });
   };
   group.append(...buttons, make("button", { class: "surprise", onclick: surprise }, "Surprise me"));
@@ -1263,7 +1272,7 @@ function paintPanel(desk) {
     if (needed !== built) {
       built = needed;
       syncs = [];
-      const range = make("small", {}, `words ${first} to ${first + levels - 1}`);
+      const range = make("small", {}, `entries ${first} to ${first + levels - 1}`);
       const heading = make("h2", {}, make("span", {}, name), range);
       const controls = fixed
         ? [strip(desk, syncs), make("p", { class: "fixed" }, fixed)]

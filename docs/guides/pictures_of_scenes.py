@@ -158,7 +158,7 @@ def scalar_form(place: Path, path: Path) -> None:
     zebra = "--set scalar.name=zebra --set scalar.scale=zebra --set scalar.bands=2 --set scalar.shades=1"
     along = "--set scalar.direction=[1,0,0] --set interpolation=invariant --set scalar.legend=false"
     ran(place, f"render {COUPE} {LARGE_PANEL} {curvature} --set scalar.bands=21 {only_body} -o curvature.png")
-    ran(place, f"render {COUPE} {LARGE_PANEL} {zebra} {along} {only_body} -o zebra.png")
+    ran(place, f"render {COUPE} {LARGE_PANEL} {zebra} {along} {only_body} --stage none -o zebra.png")
     captions = ("mean curvature, in 1/m", "zebra stripes along x")
     save(path, row_of([place / "curvature.png", place / "zebra.png"], captions))
 

@@ -17,7 +17,6 @@ from ramtek_emu import Ramtek9300
 from ramtek_emu.instruction_set.decoder import Decoder
 from scenes import (
     figure_04,
-    figure_05,
     figure_07,
     figure_10,
     figure_15,
@@ -81,31 +80,27 @@ def test_the_gallery_shows_the_picture_of_every_script() -> None:
     page = (folder / "gallery.md").read_text("utf-8")
     shown = re.findall(r"!\[[^]]+\]\((figures/[^)]+)\)\s+\[(scenes/[^]]+)\]\(../\2\)", page)
     assert dict(shown) == {
-        f"figures/figure-{number}.png": f"scenes/figure_{number.replace('-', '_')}.py"
+        f"figures/figure-{number}.webp": f"scenes/figure_{number.replace('-', '_')}.py"
         for number in figures.FIGURES
     }
     missing = [name for name, _ in shown if not (folder / name).exists()]
-    assert not missing, "run: python -m scenes.figures docs/figures --small"
+    assert not missing, "run: python -m scenes.figures docs/figures --webp"
 
 
 @pytest.mark.thorough
-def test_a_small_figure_is_one_picture_of_panels_of_half_the_size(
+def test_a_figure_of_the_docs_is_one_lossless_picture_of_its_panels(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (figure_04, figure_05, figure_highlight):
-        monkeypatch.setattr("sys.argv", ["figure", str(tmp_path), "--small"])
-        module.main()
-    sizes = {}
-    for path in tmp_path.iterdir():
+    fields = []
+    for options in (["--webp"], []):
+        monkeypatch.setattr("sys.argv", ["figure", str(tmp_path), *options])
+        figure_04.main()
+        (path,) = tmp_path.glob("figure-04.webp" if options else "figure-04.png")
         with Image.open(path) as image:
-            sizes[path.name] = image.size
-    caption = figures.CAPTION_LINES
-    assert sizes == {
-        "figure-04.png": (3 * 320, 240 + caption // 2),
-        "figure-highlight.png": (3 * 320, 2 * (240 + caption // 2)),
-        # The letters of a smaller screen could not be read.
-        "figure-05.png": (640, 480 + caption),
-    }
+            fields.append(np.asarray(image.convert("RGB")))
+    lossless, png = fields
+    assert np.array_equal(lossless, png)
+    assert png.shape == (480 + figures.CAPTION_LINES, 3 * 640, 3)
 
 
 def test_a_click_on_a_bar_of_a_screen_mixes_a_color_and_leaves_the_words_and_the_user_s_colors() -> None:
@@ -325,7 +320,7 @@ def test_the_lacquer_of_the_coupe_and_the_wet_floor_shine_under_the_lamp_behind_
             times[where, name] = brightest[1] / brightest[0]
     assert all(0.999 < times["eye", name] < 1.02 for name in figure_incidence.SURFACES)
     assert times["behind", "body"] > 3
-    assert times["behind", "floor"] > 1.5
+    assert times["behind", "stage"] > 1.5
 
 
 def test_a_lacquered_plane_shines_more_where_the_lamp_behind_the_pyramid_grazes_it() -> None:

@@ -15,9 +15,9 @@ from scenes.modeling.coupe.curves import Array, basis, ease, smooth
 AXLES = (-1.365, 1.205)
 WHEEL_HEIGHT = 0.325
 ARCH_HEIGHT, ARCH_RADIUS = 0.335, 0.375
-GAP = 0.020
+GAP = 0.014
 """The width of a shut line: 1.5 pixels across a door in the first view at 480 lines."""
-TAIL_GAP = 0.026
+TAIL_GAP = 0.018
 """It lies where the skin turns toward the tail, and is seen at a slant from the front."""
 # Upright cuts between panels, at these x.
 FASCIA_CUT, DOOR_FRONT, DOOR_REAR, TAIL_CUT = -1.86, -0.56, 0.63, 1.97
@@ -54,7 +54,7 @@ SECTIONS = {
     ),
     "tail": (
         (0.26, 0.265), (0.15, 0.235), (0.11, 0.28), (0.05, 0.36), (0.006, 0.505), (0.0, 0.540),
-        (0.020, 0.562), (0.058, 0.62), (0.070, 0.80), (0.074, 0.875), (0.12, 0), (0.22, 0), (0.34, 0),
+        (0.020, 0.562), (0.058, 0.62), (0.076, 0.82), (0.078, 0.925), (0.12, 0), (0.22, 0), (0.34, 0),
     ),
 }
 # The section of each outline column, and how far it has gone over to the next one.
@@ -66,11 +66,11 @@ COLUMNS = (
 )
 shoulder_height = smooth([
     (-2.4, 0.625), (-2.1, 0.690), (-1.75, 0.752), (-1.365, 0.800), (-0.9, 0.836), (-0.4, 0.860),
-    (0.2, 0.874), (0.8, 0.884), (1.4, 0.893), (2.0, 0.897), (2.4, 0.890),
+    (0.2, 0.874), (0.8, 0.884), (1.4, 0.893), (1.8, 0.897), (2.05, 0.905), (2.25, 0.928), (2.4, 0.952),
 ])
 center_height = smooth([
     (-2.4, 0.630), (-2.1, 0.710), (-1.75, 0.786), (-1.365, 0.851), (-0.9, 0.907), (-0.5, 0.940),
-    (0.2, 0.960), (0.8, 0.950), (1.4, 0.938), (2.0, 0.925), (2.4, 0.912),
+    (0.2, 0.960), (0.8, 0.950), (1.4, 0.938), (1.8, 0.932), (2.05, 0.934), (2.25, 0.953), (2.4, 0.975),
 ])
 # fmt: on
 S_END = float(len(OUTLINE) - 3)
@@ -85,10 +85,8 @@ ROWS = np.array([
 def top(x: ArrayLike, y: ArrayLike) -> Array:
     """Return the height of the hood, ledge and deck above (x, y)."""
     across = np.abs(np.asarray(y, dtype=float))
-    crown = (across / 0.86) ** 2.4
+    crown = (across / 0.86) ** 2.1
     height: Array = center_height(x) + (shoulder_height(x) - center_height(x)) * crown
-    bulge = 0.018 * ease(x, -2.15, -1.2) * (1 - ease(x, -0.7, -0.3)) * (1 - ease(across, 0.22, 0.46))
-    height += bulge
     return height
 
 
@@ -125,8 +123,8 @@ def wall(s: ArrayLike, v: ArrayLike) -> Array:
     # Swell out about the wheel openings.
     for axle in AXLES:
         distance = np.hypot(points[..., 0] - axle, points[..., 2] - ARCH_HEIGHT)
-        swell = np.exp(-(((distance - ARCH_RADIUS) / 0.14) ** 2)) * (1 - ease(up, 6, 8.5))
-        points[..., 1] += 0.014 * swell * ease(points[..., 1], 0.4, 0.8)
+        swell = np.exp(-(((distance - ARCH_RADIUS) / 0.055) ** 2)) * (1 - ease(up, 6, 8.5))
+        points[..., 1] += 0.013 * swell * ease(points[..., 1], 0.4, 0.8)
     return points
 
 

@@ -17,11 +17,11 @@ from scenes.modeling.coupe.parts import Names
 # fmt: off
 # Side views (x, z) of the center line and of the rail; the same count of control points.
 CENTER = np.array([
-    (-0.68, 0.940), (-0.48, 1.048), (-0.26, 1.168), (-0.07, 1.262), (0.05, 1.274), (0.28, 1.278),
+    (-0.68, 0.940), (-0.48, 1.048), (-0.23, 1.168), (-0.01, 1.260), (0.11, 1.275), (0.28, 1.278),
     (0.50, 1.270), (0.72, 1.243), (1.08, 1.172), (1.42, 1.092), (1.74, 1.012), (1.98, 0.950),
 ])
 RAIL = np.array([
-    (-0.50, 0.885), (-0.33, 0.980), (-0.13, 1.094), (0.06, 1.200), (0.15, 1.213), (0.36, 1.217),
+    (-0.53, 0.885), (-0.37, 0.980), (-0.17, 1.094), (0.03, 1.200), (0.13, 1.213), (0.36, 1.217),
     (0.55, 1.206), (0.76, 1.170), (1.10, 1.098), (1.43, 1.020), (1.72, 0.963), (1.92, 0.929),
 ])
 # fmt: on
@@ -33,7 +33,8 @@ HATCH_SIDE, HATCH_END = 0.88, 1.90
 ACROSS = np.append(np.linspace(0.0, BORDER, 9), RIM)
 BAND = (0.0, 0.14, 0.5, 0.86, 1.0)
 """Of the arcs of the band. The narrow cells keep normals right at its ends, where another part begins."""
-FLANK = 5
+FLANK_ROWS = (0.0, 0.10, 0.17, 0.58, 1.0)
+FLANK = len(FLANK_ROWS)
 
 
 def ledge(x: ArrayLike) -> Array:
@@ -121,7 +122,7 @@ def columns() -> Array:
     skin_rows[POST + 1 : -1, -2:] = fillet[POST + 1 : -1, 1:3]
     # Glass and sail begin and end in points on the edge of the skin.
     low[[0, -1]], head[[0, -1]] = foot[[0, -1]], foot[[0, -1]]
-    u = np.linspace(0, 1, FLANK)[None, :]
+    u = np.array(FLANK_ROWS)[None, :]
     side = flank(
         low[:, None, 0] * (1 - u) + head[:, None, 0] * u, low[:, None, 2] * (1 - u) + head[:, None, 2] * u
     )

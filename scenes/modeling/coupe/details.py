@@ -1,4 +1,4 @@
-"""Small things: spoiler, mirrors, handles, side moldings and wipers."""
+"""Small things: mirrors, handles, side moldings and wipers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from scenes.modeling.coupe.body import S_END, columns_at, s_at, skin, wall
 from scenes.modeling.coupe.canopy import crown, flank
-from scenes.modeling.coupe.curves import Array, ease
+from scenes.modeling.coupe.curves import Array
 from scenes.modeling.coupe.parts import Parts
 
 STRIP = np.array([3.15, 3.5])
@@ -39,25 +39,6 @@ def raised(parts: Parts, part: str, grid: Array, low: float, high: float, edging
         parts.grid(edging, strip, outward=(float(x), float(y), float(z)))
 
 
-def spoiler(parts: Parts) -> None:
-    """Add the lip on the rear deck, running out forward on the quarter panels."""
-    s = np.linspace(S_END, 14.3, 19)
-    edge = wall(s, 8.12)
-    along = wall(s + 1e-4, 8.12) - wall(s - 1e-4, 8.12)
-    inward = np.stack([along[:, 1], -along[:, 0], 0 * s], axis=1)
-    inward /= np.linalg.norm(inward, axis=1)[:, None]
-    run_out = 1 - ease(-s, -15.6, -14.3)
-    high = -0.004 + 0.058 * run_out
-    deep = 0.03 + 0.15 * run_out * (1 - 0.5 * np.exp(-(((s - 15.7) / 0.7) ** 2)))
-    up = np.array([0.0, 0.0, 1.0])
-    rows = [edge - inward * 0.002 - up * 0.012]
-    for reach, lift in ((0.03, 0.98), (0.12, 1.0), (0.28, 0.76), (0.52, 0.40), (0.78, 0.14), (1.0, -0.10)):
-        rows.append(edge + inward * (deep * reach)[:, None] + up * (high * lift + 0.010 * reach)[:, None])
-    points = np.stack(rows, axis=1)
-    # From side to side as one closed bar.
-    parts.closed("spoiler", np.concatenate([points[:0:-1] * [1, -1, 1], points]), mirror=False)
-
-
 def mirrors(parts: Parts) -> None:
     """Add the door mirrors: a rounded housing, its glass and its foot."""
     x = np.array([-0.43, -0.425, -0.405, -0.37, -0.33, -0.295, -0.285])[:, None]
@@ -84,7 +65,7 @@ def mirrors(parts: Parts) -> None:
 def wipers(parts: Parts) -> None:
     """Add two wipers, at rest low on the windshield."""
     lift = np.array([-0.008, 0, 0.014])
-    for w0, w1, t0, t1 in ((-0.02, 0.58, 0.34, 0.30), (-0.66, -0.10, 0.26, 0.34)):
+    for w0, w1, t0, t1 in ((-0.04, 0.60, 0.20, 0.14), (-0.66, -0.10, 0.13, 0.20)):
         w, t = np.linspace(w0, w1, 5), np.linspace(t0, t1, 5)
         low, high = crown(t, w), crown(t + 0.05, w)
         blade = np.stack([low, low + lift, high + lift, high], axis=1)
@@ -104,7 +85,6 @@ def strips(parts: Parts) -> None:
 
 def build(parts: Parts) -> None:
     """Add all of them."""
-    spoiler(parts)
     mirrors(parts)
     wipers(parts)
     strips(parts)

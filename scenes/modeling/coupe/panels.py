@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.modeling.coupe import canopy, ends
+from scenes.modeling.coupe import cabin, canopy, ends
 from scenes.modeling.coupe.body import (
     ARCH_HEIGHT,
     ARCH_RADIUS,
@@ -40,7 +40,7 @@ FOOT_ROW, CREASE_ROW, SHOULDER_ROW = (
 EDGE_ROW = len(ROWS) - 1
 RING_WIDTH = 0.11
 WELL = 0.50
-LIFT = 0.005
+LIFT = 0.010
 """The hood is this much higher than `top`: its shut line shows on the near side and hides on the far one."""
 
 
@@ -113,7 +113,7 @@ def arch(parts: Parts, part: str, skin_: Skin, columns: tuple[int, int], axle: f
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1) * ARCH_RADIUS + [axle, ARCH_HEIGHT]
     guess = np.stack([s_at(circle[:, 0], CREASE), circle[:, 1] * 9 - 1], axis=1)
     inner = invert(wall, circle, (0, 2), guess)
-    steps = np.array([0.0, 0.15, 0.38, 0.66, 1.0])
+    steps = np.array([0.0, 0.12, 0.27, 0.46, 0.70, 1.0])
     ring = skin(inner[:, None] * (1 - steps[:, None]) + outer[:, None] * steps[:, None])
     parts.grid(part, ring)
 
@@ -176,7 +176,9 @@ def build(parts: Parts) -> None:
     skin_.points[skin_.glass : skin_.deck + 1] = beside[:, : EDGE_ROW + 1]
     skin_.points[: skin_.cowl + 1, EDGE_ROW, 2] += LIFT
     parts.grid(side_names(skin_), skin_.points)
-    parts.grid(canopy.names(), beside[:, EDGE_ROW:])
+    names = cabin.opened(canopy.names())
+    parts.grid(names, beside[:, EDGE_ROW:])
+    cabin.build(parts, beside[:, EDGE_ROW:], names)
     for part, columns, axle in zip(("fender_{side}", "quarter_{side}"), skin_.arches, AXLES, strict=True):
         arch(parts, part, skin_, columns, axle)
     shield, hatch = beside[[0, -1], EDGE_ROW + canopy.FLANK :][:, ::-1]

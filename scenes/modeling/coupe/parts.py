@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
-from scenes.modeling.coupe.curves import Array
+from autocolor.scene.geometry.normals import node_normals
+from scenes.modeling.coupe.curves import Array, Indices
 
 MIDDLE_HEIGHT = 0.55
 DECIMALS = 5
@@ -21,6 +24,8 @@ class Parts:
         """Start with no part."""
         self.nodes: dict[str, dict[Point, int]] = {}
         self.polygons: dict[str, list[list[int]]] = {}
+        self.normals: dict[str, Callable[[Array], Array]] = {}
+        """The normals of a part at places (..., 3), instead of those of its polygons."""
 
     def polygon(self, part: str, points: Array) -> None:
         """Add one polygon, counterclockwise from outside; corners that coincide are taken together."""
@@ -75,6 +80,32 @@ class Parts:
             middle = np.broadcast_to(end.mean(axis=0), end.shape)
             self.grid(part, np.stack([end, middle]), flip=flip, mirror=mirror)
 
+    def rings(self, names: Sequence[str]) -> Iterator[list[Point]]:
+        """The corners of each polygon of these parts."""
+        for name in names:
+            nodes = list(self.nodes[name])
+            yield from ([nodes[corner] for corner in corners] for corners in self.polygons[name])
+
+    def sink(self, part: str, others: Sequence[str], depth: float) -> None:
+        """Lower the polygons of a part of the skin, with walls where they adjoin polygons of the others."""
+        normals: dict[Point, Array] = {}
+        for ring in self.rings([part]):
+            corners = np.array(ring)
+            normal = np.cross(corners[2] - corners[0], corners[-1] - corners[1])
+            for node in ring:
+                normals[node] = normals.get(node, 0.0) + normal / np.linalg.norm(normal)
+        lowered = {
+            node: np.array(node) - depth * normal / np.linalg.norm(normal) for node, normal in normals.items()
+        }
+        rims = {edge for ring in self.rings(others) for edge in zip(ring, ring[1:] + ring[:1], strict=True)}
+        rings = list(self.rings([part]))
+        self.nodes[part], self.polygons[part] = {}, []
+        for ring in rings:
+            self.polygon(part, np.array([lowered[node] for node in ring]))
+            for a, b in zip(ring, ring[1:] + ring[:1], strict=True):
+                if (b, a) in rims:
+                    self.polygon(part, np.array([a, b, lowered[b], lowered[a]]))
+
     def numbered(self, names: list[str]) -> tuple[list[Point], dict[str, list[list[int]]]]:
         """Return the nodes these parts have together, and their polygons as node numbers from 1."""
         numbers: dict[Point, int] = {}
@@ -84,14 +115,45 @@ class Parts:
             polygons[name] = [[own[corner] for corner in corners] for corners in self.polygons[name]]
         return list(numbers), polygons
 
-    def obj(self, names: list[str], title: str) -> str:
-        """Return the OBJ text of these parts: shared nodes, then the polygons of each part."""
+    def obj(self, names: list[str], title: str, apart: Sequence[str] | None = None) -> str:
+        """Return the OBJ text of these parts: shared nodes, then the polygons of each part.
+
+        With `apart`, the file has normals, which are smooth across the borders of all parts but these.
+        """
         nodes, polygons = self.numbered(names)
         lines = [f"# {title}"] + [f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in nodes]
+        numbers = None
+        if apart is not None:
+            normals, rows = self.normals_of(names, apart)
+            lines += [f"vn {x:.4f} {y:.4f} {z:.4f}" for x, y, z in normals]
+            numbers = iter(rows.tolist())
         for name in names:
             lines.append(f"g {name}")
-            lines += ["f " + " ".join(map(str, corners)) for corners in polygons[name]]
+            for ring in polygons[name]:
+                corners = [str(node) for node in ring]
+                if numbers:
+                    own = zip(ring, next(numbers), strict=False)
+                    corners = [f"{node}//{normal + 1}" for node, normal in own]
+                lines.append("f " + " ".join(corners))
         return "\n".join(lines) + "\n"
+
+    def normals_of(self, names: list[str], apart: Sequence[str]) -> tuple[Array, Indices]:
+        """Return the distinct normals (k, 3) of these parts, and their rows at the corners (polygons, 4)."""
+        nodes, polygons = self.numbered(names)
+        corners = np.array([(*ring, ring[-1])[:4] for name in names for ring in polygons[name]]) - 1
+        of_part = np.repeat(names, [len(polygons[name]) for name in names])
+        groups = np.array([1 + names.index(name) * (name in apart) for name in of_part])
+        computed = node_normals(np.array(nodes), corners, groups)
+        normals = computed.vectors[computed.numbers].astype(float)
+        for name in self.normals.keys() & set(names):
+            places = np.array(nodes)[corners[of_part == name]]
+            given = self.normals[name](places)
+            # They are on the side from which the polygon is counterclockwise.
+            facing = np.cross(places[:, 2] - places[:, 0], places[:, 3] - places[:, 1])
+            same = (facing * given.sum(axis=1)).sum(axis=1) > 0
+            normals[of_part == name] = np.where(same, 1.0, -1.0)[:, None, None] * given
+        unique, rows = np.unique(np.round(normals.reshape(-1, 3), 4) + 0.0, axis=0, return_inverse=True)
+        return unique, rows.reshape(-1, 4)
 
     def counts(self, names: list[str]) -> tuple[int, int, int]:
         """Return the numbers of nodes, polygons and distinct edges of these parts in one file."""

@@ -485,4 +485,4 @@ def test_as_in_1983_sets_what_the_paper_does_not_describe_and_nothing_else() -> 
     assert paper.surfaces[0].reflectance == Reflectance(0.7, 0.5, Phong(10.0))
     assert paper.as_in_1983().equals(paper)
     coupe = demo()
-    assert set(difference(coupe, coupe.as_in_1983())) == {"interpolation", "contrast", "exposure"}
+    assert set(difference(coupe, coupe.as_in_1983())) == {"interpolation", "contrast", "exposure", "lights"}

@@ -347,7 +347,7 @@ DRAWN = {
     "held": 3520680427,
     "the eye and the mesh": 3818525958,
     "nearer": 3889551925,
-    "the coupe": 2505865677,
+    "the coupe": 2845751936,
 }
 
 
