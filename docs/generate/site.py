@@ -203,8 +203,7 @@ def collect() -> None:
         with Image.open(FOLDER / picture) as image:
             thumbnail = ImageOps.fit(image.convert("RGB"), (480, 360))
         thumbnail.save(FOLDER / f"{picture}.thumb.webp")
-    # The live coupe turns; its picture is shown before the page is loaded.
-    autocolor.save_page(FOLDER / "coupe.html", autocolor.demo(), views=12, overwrite=True)
+    # The picture of the live coupe is shown before the coupe is loaded.
     (poster,) = POSTER.findall((FOLDER / "coupe.html").read_text("utf-8"))
     with (FOLDER / "assets" / "site.css").open("a") as style:
         style.write(f'.live {{ background-image: url("{poster}"); }}\n')
