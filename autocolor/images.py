@@ -144,7 +144,7 @@ def save_words(
     indexed: bool = False,
     overwrite: bool = False,
 ) -> None:
-    """Write the words of a picture with their entries to a PNG file, atomically.
+    """Write the words of a picture, and the entries of a scene's colors, to a PNG file, atomically.
 
     The file has the lines and elements of the picture: words cannot be averaged, so a smooth picture has
     `smooth` times the lines and elements of its image. The legend of a scalar is left out. The pixels are

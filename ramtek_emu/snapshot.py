@@ -64,7 +64,7 @@ NAMES: Final = {
 
 
 def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = False) -> None:
-    """Write a snapshot to a PNG file, whole or not at all.
+    """Write a snapshot of a display to a PNG file, whole or not at all.
 
     Raises OutputError for a name that does not end in .png, and if no file can be created there;
     OutputExistsError if the file exists and `overwrite` is false; WriteError if writing fails.

@@ -16,7 +16,19 @@ from PIL import Image
 import autocolor
 import ramtek_emu
 from docs.generate.blocks import blocks_of
-from docs.generate.site import PAGES, ROOT, documents, links_of, page_of, place_of, target_of
+from docs.generate.site import (
+    EXAMPLES,
+    PAGES,
+    PUBLIC,
+    ROOT,
+    documents,
+    links_of,
+    page_of,
+    place_of,
+    place_of_name,
+    target_of,
+    value_of,
+)
 from docs.guides import pictures, pictures_of_displays
 from docs.guides.pictures import GUIDES, path_of
 from scenes.figures import Field
@@ -71,7 +83,7 @@ def test_the_light_control_is_quoted_as_it_is_in_the_source(quote: str) -> None:
 
 @pytest.mark.parametrize("package", WINGS)
 def test_all_parts_of_a_package_are_described_in_their_order(package: str) -> None:
-    table = TEXT[TEXT.index(f"| `{package}` | |") :].split("\n\n")[0]
+    table = TEXT[TEXT.index(f"| `{package}` | subject |") :].split("\n\n")[0]
     names = re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in table.splitlines()))
     assert (*names, "__main__") == (package, *WINGS[package])
 
@@ -145,11 +157,36 @@ def test_links_change_to_places_on_the_site() -> None:
     )
 
 
-def test_the_front_page_shows_the_live_coupe_before_its_second_heading() -> None:
-    page = page_of("README.md", "# A\n\ntext\n\n## B\n\n## C\n")
-    assert re.findall("^## .*|^<iframe.*src=.coupe.html.", page, re.MULTILINE) == [
-        "## Try it here", '<iframe class="live" src="coupe.html"', "## B", "## C",
-    ]  # fmt: skip
+def test_the_front_page_begins_with_the_live_coupe_instead_of_its_picture() -> None:
+    page = page_of("README.md", README)
+    assert page.index('<iframe src="coupe.html?embed"') < page.index("# AUTOCOLOR")
+    assert "recolor.webp" not in page
+
+
+def test_each_picture_of_the_gallery_has_a_thumbnail_its_script_and_downloads() -> None:
+    entries = re.findall(
+        r"^!\[.+\]\((.+)\)\n\n\[.+\]\(\.\./(.+)\)$", DOCUMENTS["docs/gallery.md"], re.MULTILINE
+    )
+    page = page_of("docs/gallery.md", DOCUMENTS["docs/gallery.md"])
+    assert page.count("thumb.webp") == len(entries) > 20
+    for picture, script in entries:
+        for text in (
+            f"]({picture}.thumb.webp)]({picture})",
+            f"[Script](source/{script}.md)",
+            f'[picture]({picture}){{download=""}}',
+            f'<a href="source/{script}" download>',
+        ):
+            assert text in page
+
+
+def test_the_page_of_python_links_to_the_page_of_every_name_below_its_example() -> None:
+    page = page_of("docs/api.md", DOCUMENTS["docs/api.md"])
+    for name in PUBLIC:
+        before, _, after = page.partition(f"- [`{name}`]({place_of_name(name)}): ")
+        assert EXAMPLES[name] in before, f"show {name} in an example of docs/api.md"
+        assert after.partition("\n")[0]
+    places = [place_of_name(name).lower() for name in PUBLIC]
+    assert len(set(places)) == len(places)
 
 
 def test_every_document_is_in_the_navigation_of_the_site_once() -> None:
@@ -179,10 +216,11 @@ def docstrings() -> Iterator[tuple[str, str]]:
                     yield f"{package.__name__}.{name}.{member}", inspect.getdoc(inner) or ""
 
 
-def test_the_reference_of_python_has_every_public_name() -> None:
-    shown = re.findall(r"^::: (.*)$", DOCUMENTS["docs/api.md"], re.MULTILINE)
-    public = [f"{package.__name__}.{name}" for package in (autocolor, ramtek_emu) for name in package.__all__]
-    assert sorted(shown) == sorted([*public, "ramtek_emu.instructions"])
+def test_every_keyword_of_a_public_function_is_in_its_docstring() -> None:
+    for function in filter(inspect.isfunction, (value_of(name) for name in PUBLIC)):
+        keywords = inspect.signature(function).parameters.keys() - {"path", "overwrite"}
+        text = inspect.getdoc(function) or ""
+        assert not [each for each in keywords if not re.search(rf"\b{each}s?\b", text)], function
 
 
 def test_examples_in_public_docstrings_are_indented_as_code() -> None:

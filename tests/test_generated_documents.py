@@ -19,6 +19,7 @@ from autocolor.scene.columns import Row, fields_of, keys_of
 from autocolor.screens.keys import BINDINGS, WINDOW_KEYS
 from docs.generate import changes, columns, commands, fidelity, keys, store
 from docs.generate.notebook import CODE, MARKDOWN, NOTEBOOK, Cell, cells_of, notebook, outputs_of
+from docs.generate.site import EXAMPLES
 from ramtek_emu.inspection.inspector import help_rows
 from ramtek_emu.monitor.overlay import KEYS
 
@@ -59,17 +60,17 @@ def test_every_key_of_a_table_has_a_line_with_its_help(title: str, text: str, cl
         assert column.help in line
 
 
-def test_the_page_of_python_gives_every_keyword_of_a_row_with_its_help() -> None:
+def test_the_page_of_a_name_gives_every_keyword_of_a_row_with_its_help_and_the_example() -> None:
     griffe = pytest.importorskip("griffe", reason="griffe comes with autocolor[docs]")
     from docs.generate.keywords import Keywords
 
     package = griffe.load("autocolor", extensions=griffe.load_extensions(Keywords))
-    names = re.findall(r"^::: autocolor\.(\w+)$", (ROOT / "docs" / "api.md").read_text("utf-8"), re.MULTILINE)
-    classes = [each for name in names if isinstance(each := getattr(autocolor, name), type)]
+    classes = [each for name in autocolor.__all__ if isinstance(each := getattr(autocolor, name), type)]
     rows = [cls for cls in classes if issubclass(cls, Row)]
     assert len(rows) > 10
     for cls in rows:
         page = package[f"{cls.__module__.removeprefix('autocolor.')}.{cls.__name__}"]
+        assert EXAMPLES[f"autocolor.{cls.__name__}"] in page.docstring.value
         for name, column in fields_of(cls).items():
             assert f"| `{name}` | {column.help}" in page.docstring.value
             assert name in page.parameters

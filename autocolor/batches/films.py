@@ -79,8 +79,9 @@ def animate(
     the last, as the function `frames` makes them. `fps`, the frames per second, is 0.1 to 100.
 
     A frame costs its edit from the frame before. Memory is bounded, because frames are written as they are
-    made; only a stream is in memory until its end. With `loop`, a film begins again at its end. `size` and
-    `smooth` are as in `batch`.
+    made; only a stream is in memory until its end. With `loop`, a film begins again at its end. `source`,
+    `size`, `smooth`, `executor` and `overwrite` are those of `batch`; `progress` is called with the result of
+    each frame.
 
     `path` may be a pattern of numbered pictures, such as "frame-{number:04}.png". A file that ends in .ramtek
     has the words of the first frame and then a load of the lookup table for each frame; it is never smooth.

@@ -429,7 +429,9 @@ def batch_results(
     output: str | PathLike[str] | None = None,
     **options: Unpack[Options],
 ) -> Generator[Result, None, None]:
-    """The results of variants as their pictures are made; see `batch` for the arguments.
+    """The results of variants as their pictures are made.
+
+    `source`, `variants`, `output` and the other `options` are those of `batch`.
 
     With `ordered`, the variants are made in their own order, each after the variant before it; otherwise in
     the order in which they cost least. Memory is bounded, however many variants there are. To stop a batch,

@@ -250,8 +250,8 @@ def results_bytes(results: Sequence[Result]) -> bytes:
 def grid(axes: Mapping[str, Iterable[object]]) -> tuple[Variant, ...]:
     """Every combination of values for some keys, as variants; the last key changes fastest.
 
-    The values of a key may be the colors of a Palette, with their names. Raises UsageError for an axis
-    without values, and for too many variants.
+    `axes` has the values of each key. They may be the colors of a Palette, with their names. Raises
+    UsageError for an axis without values, and for too many variants.
 
         >>> [variant.name for variant in grid({"scaling": ["object", "surface"], "ambient": [0.1, 0.2]})]
         ['object-0.1', 'object-0.2', 'surface-0.1', 'surface-0.2']

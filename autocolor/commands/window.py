@@ -35,7 +35,7 @@ def view(
     `scene` is a Scene, the path of a scene or a mesh (see `read_scene`), or a Studio, whose scene is then
     edited (see `Studio.view_window`). The edits of another scene are lost unless the user saves them. With
     `fit`, the picture fills the window, and its pixels may become uneven; so it does without `fit` if the
-    screen has no room for twice its size.
+    screen has no room for twice its size. With `full_screen`, the window fills the screen.
 
     Raises UnavailableError without a screen, and the errors of `read_scene`.
     """

@@ -65,9 +65,9 @@ def scene_of(
 
     A part gets the first of these surfaces that exists: the surface that `parts` or `surface_of_part` names;
     the given surface with the part's name; with `surfaces="parts"`, a new surface like its material; the
-    surface of its material, from `materials` or created; the only given surface, if no part has it yet; a
-    created surface that all other parts share. Beyond MOST_SURFACES, the remaining parts share the last
-    surface.
+    surface of its material (`material_of_part`), from `materials` or created; the only given surface, if no
+    part has it yet; a created surface that all other parts share. Beyond MOST_SURFACES, the remaining parts
+    share the last surface.
 
     `parts` has fields of parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other fields
     of Scene. Raises InputError, or UsageError for any word but "materials" and "parts".

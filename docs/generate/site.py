@@ -1,22 +1,35 @@
-"""The folder that the site is built from: `docs`, the front page, the live coupe, and sources.
+"""The site: `python -m docs.generate.site` collects its pages in build/docs, and builds it in build/site.
 
-`python -m docs.generate.site` writes it to build/docs, as `mkdocs.yml` expects.
+SITE_URL is the address of the site, if it has one, such as https://example.com/autocolor/.
 
 The documents are written for a clone, where a link leads to a file of the project. On the site, README.md is
-the front page, and a link to a file outside `docs` leads to a page that shows the file.
+the front page, with the live coupe in place of its picture; a link to a file outside `docs` leads to a page
+that shows the file; the gallery has thumbnails; each public name has a page of its own.
 """
 
 from __future__ import annotations
 
+import inspect
+import os
+import pkgutil
 import re
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from posixpath import dirname, join, normpath, relpath, splitext
-from typing import Final
+from typing import Any, Final
+
+from PIL import Image, ImageOps
+
+import autocolor
+import ramtek_emu
+from docs.generate.blocks import blocks_of
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 FOLDER: Final = ROOT / "build" / "docs"
+SITE: Final = ROOT / "build" / "site"
 
 PAGES: Final = {
     "README.md": "index.md", "docs/README.md": "documents.md",
@@ -32,13 +45,27 @@ LANGUAGES: Final = {
 FULL_WIDTH: Final = "---\nhide: [navigation, toc]\n---\n"
 """The head of a page without columns beside its text."""
 
-LIVE: Final = """## Try it here
+HERO: Final = re.compile(r"^!\[.*\]\(docs/recolor\.webp\)$", re.MULTILINE)
+"""The picture of the README."""
 
-<iframe class="live" src="coupe.html" title="The coupe, with colors and lights to change"></iframe>
+LIVE: Final = (
+    '<div class="live"><iframe src="coupe.html?embed" scrolling="no"'
+    ' title="The coupe: choose a paint, and drag the picture to turn it"></iframe></div>'
+)
+"""The live coupe. It does not scroll, so that a wheel or a finger over it moves the page."""
 
-Point at the body and mix a paint: your browser rewrites entries of the table, and computes no pixel again.
-The picture is [one file](coupe.html), made by `autocolor page`, and works without a network.
+POSTER: Final = re.compile(r"data:image/webp;base64,[^\"]+")
+"""The picture that a page of `autocolor page` shows before its script has run."""
 
+ENTRY: Final = re.compile(r"#+ (.+)\n\n!\[(.+)\]\((.+)\)\n\n\[.+\]\(\.\./(.+)\)\n+")
+"""An entry of the gallery: its title, the picture with its description, and the script."""
+
+CARD: Final = r"""
+-   [![\2](\3.thumb.webp)](\3)
+
+    **\1**
+
+    [Script](../\4) · Download: [picture](\3){download=""}, <a href="source/\4" download>script</a>
 """
 
 CODE: Final = re.compile(
@@ -81,16 +108,65 @@ def place_of(path: str) -> str:
     return f"source/{path}.md" if suffix in LANGUAGES else f"source/{path}"
 
 
+PUBLIC: Final = {
+    f"{package.__name__}.{name}" for package in (autocolor, ramtek_emu) for name in package.__all__
+} | {"ramtek_emu.instructions"}
+"""The names that have a page."""
+
+
+def examples_in(markdown: str) -> dict[str, str]:
+    """The first code block that has each public name."""
+    examples: dict[str, str] = {}
+    for block in blocks_of(markdown):
+        for name in re.findall(r"\b(?:autocolor|ramtek_emu)\.\w+", block.text):
+            if name in PUBLIC:
+                examples.setdefault(name, block.text)
+    return examples
+
+
+EXAMPLES: Final = examples_in((ROOT / "docs" / "api.md").read_text("utf-8"))
+
+
+def value_of(name: str) -> Any:
+    """The value of a public name, such as `autocolor.render`."""
+    return pkgutil.resolve_name(name.replace(".", ":"))
+
+
+def place_of_name(name: str) -> str:
+    """The place of the page of a public name. Some disks hold no `View` beside a `view`."""
+    package, name = name.split(".")
+    return f"api/{package}/{'functions' if name.islower() else 'classes'}/{name}.md"
+
+
+def summary_of(name: str) -> str:
+    """A link to the page of a public name, and the first paragraph of its docstring."""
+    value = value_of(name)
+    is_constant = name.split(".")[1].isupper()
+    text = f"A {type(value).__name__}." if is_constant else (inspect.getdoc(value) or "").partition("\n\n")[0]
+    return f"[`{name}`]({place_of_name(name)}): {' '.join(text.split())}"
+
+
 def page_of(document: str, markdown: str) -> str:
     """The text of a document on the site, its links changed to places there."""
+    if document == "README.md":
+        markdown = f"{FULL_WIDTH}{LIVE}\n\n{HERO.sub('', markdown)}"
+    if document == "docs/gallery.md":
+        markdown = FULL_WIDTH + re.sub(
+            rf"(?:{ENTRY.pattern})+",
+            lambda run: f'<div class="grid cards" markdown>\n{ENTRY.sub(CARD, run[0])}\n</div>\n\n',
+            markdown,
+        )
+    if document == "docs/api.md":
+        for example in dict.fromkeys(EXAMPLES.values()):
+            block = f"```python\n{example}```\n"
+            names = [f"- {summary_of(name)}" for name in EXAMPLES if EXAMPLES[name] == example]
+            markdown = markdown.replace(block, "\n".join([block, *names, ""]))
     here = dirname(place_of(document)) or "."
     for link in reversed(list(links_of(markdown))):
         path, mark, anchor = link[0].partition("#")
         if path:
             place = relpath(place_of(target_of(document, path)), here) + mark + anchor
             markdown = markdown[: link.start()] + place + markdown[link.end() :]
-    if document == "README.md":
-        markdown = FULL_WIDTH + markdown.replace("\n## ", f"\n{LIVE}## ", 1)
     return markdown
 
 
@@ -107,28 +183,41 @@ def write(place: str, content: bytes) -> None:
     path.write_bytes(content)
 
 
-def write_live_coupe() -> None:
-    """Write the coupe as a page, with its lights."""
-    import autocolor
-
-    scene = autocolor.demo()
-    picture = autocolor.render(scene, smooth=2)
-    autocolor.save_page(FOLDER / "coupe.html", scene, picture, lights=True, overwrite=True)
-
-
-def main() -> None:
-    """Write the whole folder."""
+def collect() -> None:
+    """Write the whole folder of pages."""
     texts = documents()
     shutil.rmtree(FOLDER, ignore_errors=True)
-    own = shutil.ignore_patterns("*.md", "*.py", "__pycache__", "generate")
+    own = shutil.ignore_patterns("*.md", "*.py", "__pycache__", "generate", "404.html")
     shutil.copytree(ROOT / "docs", FOLDER, ignore=own)
-    write_live_coupe()
     for document, text in texts.items():
         write(place_of(document), page_of(document, text).encode())
     for path in {target_of(document, link[0]) for document in texts for link in links_of(texts[document])}:
         if (place := place_of(path)).startswith("source/") and (ROOT / path).is_file():
             content = (ROOT / path).read_bytes()
-            write(place, source_page(path, content.decode()).encode() if place.endswith(".md") else content)
+            write(f"source/{path}", content)
+            if place.endswith(".md"):
+                write(place, source_page(path, content.decode()).encode())
+    for name in EXAMPLES:
+        write(place_of_name(name), f"[Python](../../../api.md) / `{name}`\n\n::: {name}\n".encode())
+    for _, _, picture, _ in ENTRY.findall(texts["docs/gallery.md"]):
+        with Image.open(FOLDER / picture) as image:
+            thumbnail = ImageOps.fit(image.convert("RGB"), (480, 360))
+        thumbnail.save(FOLDER / f"{picture}.thumb.webp")
+    # The picture of the live coupe is shown before the coupe is loaded.
+    (poster,) = POSTER.findall((FOLDER / "coupe.html").read_text("utf-8"))
+    with (FOLDER / "assets" / "site.css").open("a") as style:
+        style.write(f'.live {{ background-image: url("{poster}"); }}\n')
+
+
+def main() -> None:
+    """Collect the pages and build the site."""
+    collect()
+    command = [sys.executable, "-m", "zensical", "build", "--clean", "--strict"]
+    subprocess.run(command, cwd=ROOT, check=True)
+    if "SITE_URL" not in os.environ:
+        (SITE / "sitemap.xml").unlink()
+        # Its links are right in any folder of a server, and those of the theme's page are not.
+        shutil.copy(ROOT / "docs" / "assets" / "404.html", SITE)
 
 
 if __name__ == "__main__":

@@ -224,7 +224,7 @@ class SocketPort:
 
 
 class TcpPort(SocketPort):
-    """A host port to the display at `tcp://host:port`, such as `ramtek serve --port` opens.
+    """A host port to the display at an `address`, `tcp://host:port`, such as `ramtek serve --port` opens.
 
     While the display serves another host, this host waits in line: its words are stored and executed when its
     turn comes. `receive` waits up to `timeout` seconds for replies, and `close` until the display has
@@ -265,7 +265,8 @@ def host_and_port(address: str) -> tuple[str, int]:
 class UnixPort(SocketPort):
     """A host port to the display at a path, such as `ramtek serve --unix` makes.
 
-    It waits in line and for the display as TcpPort does. The display rounds each packet down to whole words.
+    It waits in line, and up to `timeout` seconds for the display, as TcpPort does. The display rounds each
+    packet down to whole words.
     """
 
     at_once = 1 << 16

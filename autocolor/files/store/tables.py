@@ -45,8 +45,7 @@ def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0, limit: flo
             tables.select("SELECT name, surface FROM parts WHERE stage = ?", [False])
             tables.update("lights", "key", intensity=2.0)
 
-    `limit` is a factor for the memory budget. Raises InputError, MissingInputError, and UsageError as
-    `read_scene`.
+    `up`, `scale` and `limit`, and the errors, are those of `read_scene`.
     """
     path = Path(path)
     with allowing(limit):
