@@ -162,8 +162,8 @@ class Scene(Row):
         INTERPOLATIONS,
         default=SCAN_LINE,
         tier=Tier.FRAME,
-        help="Whether normals are interpolated along scan lines, in triangles, which look the same as the"
-        " camera rolls, or linearly in the picture, as in 1983.",
+        help="How normals are interpolated: along scan lines, in triangles (the same if the camera rolls), or"
+        " linearly, as in 1983.",
     )
     background: Color = color(
         default=(0, 0, 0), tier=Tier.ENTRIES, help="The color where nothing is visible."

@@ -87,7 +87,7 @@ class Gallery:
     def advance(self, wanted: Mapping[Any, Callable[[], Small]]) -> bool:
         """Make the next of the wanted pictures, and show those that are made; False if nothing is left.
 
-        A picture that raises an AutocolorError is left out.
+        Where a picture raises an AutocolorError, the tile says "no picture".
         """
         missing = next((key for key in wanted if key not in self._small), None)
         if missing is not None:

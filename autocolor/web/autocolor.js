@@ -1490,7 +1490,7 @@ function lightRows(desk) {
   return [make("section", { class: "lights" }, make("h2", {}, "Lights"), box, why)];
 }
 
-const RESTING = "The lights rest in this view: the page has their planes for the first view only.";
+const RESTING = "Lights can be changed in the first view only: the page has their planes for no other.";
 
 /** The whole lookup table, with the range of the chosen surface, behind a fold. @param {Desk} desk */
 function wholeTable(desk) {
@@ -1576,7 +1576,7 @@ function sharing(desk, hosted) {
       await navigator.clipboard.writeText(text);
       desk.say("Copied, with these colors.");
     } catch {
-      desk.say("The browser refused; copy the link from its address bar.");
+      desk.say("The browser did not allow it; a link of the address bar has these colors, too.");
     }
   }
   function copyEmbedded() {

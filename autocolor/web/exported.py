@@ -157,15 +157,15 @@ def export_of(
     known = _visible(picture)
     for turned in views[1:]:
         scene = image.scene.replace(view=turned.view)
-        shown = display_image(scene, render(scene, picture.size, smooth=picture.smooth))
-        check_table(turned.name, shown, image)
-        values["views"].append({"name": turned.name, "words": _text(packed_words(shown.words))})
+        other = display_image(scene, render(scene, picture.size, smooth=picture.smooth))
+        check_table(turned.name, other, image)
+        values["views"].append({"name": turned.name, "words": _text(packed_words(other.words))})
         for surface in values["surfaces"]:
             # The first view that shows a surface tells how bright its lowest level is.
-            if surface["name"] in _visible(shown.picture) - known:
-                surface["floor"] = shown.floor_of(surface["name"])
-                entries[_run(surface)] = shown.entries_of(surface["name"])
-        known |= _visible(shown.picture)
+            if surface["name"] in _visible(other.picture) - known:
+                surface["floor"] = other.floor_of(surface["name"])
+                entries[_run(surface)] = other.entries_of(surface["name"])
+        known |= _visible(other.picture)
         if progress is not None:
             progress(turned.name)
     if values["views"]:

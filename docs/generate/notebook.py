@@ -1,7 +1,7 @@
 """The notebook of the paper: `python -m docs.generate.notebook > examples/the_paper.ipynb`.
 
 Its script, `examples/the_paper.py`, has a cell from each line `# %%` on, and a text from each line
-`# %% [markdown]` on. After `# %%` may stand metadata of the cell, such as `jupyter={"outputs_hidden": true}`.
+`# %% [markdown]` on. The metadata of a cell follow `# %%`, as in `jupyter={"outputs_hidden": true}`.
 The lines above the first cell are left out. All cells are run, and their texts and pictures are in the
 notebook, so that it can be read where it cannot be run; of a widget it has the picture. The Python blocks of
 a text run in their turn, with a copy of the names so far, and have no output.
