@@ -102,7 +102,7 @@ print("done")
 def test_nothing_that_linux_alone_has_is_needed(tmp_path: Path) -> None:
     state = tmp_path / "state"
     ran = subprocess.run(
-        [sys.executable, "-c", HIDE + USE, str(ROOT / "scenes" / "coupe"), str(tmp_path)],
+        [sys.executable, "-c", HIDE + USE, str(ROOT / "benchmarks" / "coupe"), str(tmp_path)],
         check=False,
         cwd=ROOT,
         env={"XDG_STATE_HOME": str(state), "PYTHONPATH": str(ROOT), "PATH": ""},

@@ -50,6 +50,7 @@ key.
   infinite.
 - `mesh_scalars` names the scalars of the mesh, of a 'node' or of a 'polygon'. A node or polygon without a
   row, or with NULL, has no value.
+- There are no normals. Those of a mesh file are left out with a warning, and computed again.
 
 Only `nodes` and `polygons` are required. Without `parts`, the polygons name the parts. Other missing tables
 are created, as for a mesh without a scene, and a missing column has its default. A table `lights` without

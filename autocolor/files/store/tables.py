@@ -6,6 +6,7 @@ import os
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -25,7 +26,11 @@ from autocolor.files.store.connections import (
 )
 from autocolor.files.store.schema import quoted
 from autocolor.files.store.store_file import report_in, store_bytes
+from autocolor.logs import logger_of
+from autocolor.scene.mesh import Mesh, has_same_tables
 from autocolor.scene.scene import Scene
+
+LOG: Final = logger_of(__name__)
 
 SECONDS: Final = 30.0
 """Limit: how long a statement may take, unless the user allows more."""
@@ -61,7 +66,7 @@ def is_store(path: Path) -> bool:
 
 def tables_of(scene: Scene) -> Tables:
     """The tables of a scene, in memory."""
-    return Tables(store_bytes(scene), scene.name)
+    return Tables(store_bytes(scene), scene.name, mesh=scene.mesh)
 
 
 class Tables:
@@ -71,12 +76,18 @@ class Tables:
     scene is checked as a scene file is; a change is saved or refused as a whole. Changes of a store are saved
     to its file at once. Changes of another scene stay in memory: `write_scene` writes
     `scene()`. A statement that takes longer than `seconds` is ended.
+
+    Tables have no normals. The own normals of the `mesh` from which they were made stay while its nodes,
+    polygons and parts do.
     """
 
-    def __init__(self, content: bytes, name: str, store: Path | None = None) -> None:
+    def __init__(
+        self, content: bytes, name: str, store: Path | None = None, mesh: Mesh | None = None
+    ) -> None:
         self._connection = in_memory(content)
         self._name = name
         self._store = store
+        self._mesh = mesh
         self.seconds = SECONDS
         self._limit = validated_limit(None)
 
@@ -185,7 +196,13 @@ class Tables:
     def scene(self) -> Scene:
         """The scene of the tables as they are now. Raises InputError."""
         with allowing(self._limit):
-            return report_in(self._connection, self._name).scene
+            scene, before = report_in(self._connection, self._name).scene, self._mesh
+        if before is None or before.own_normals is None:
+            return scene
+        if not has_same_tables(scene.mesh, replace(before, own_normals=None)):
+            LOG.warning("%s: the normals of the changed mesh will be computed", self._name)
+            return scene
+        return scene.replace(mesh=replace(before, crease_angle=scene.mesh.crease_angle))
 
     def close(self) -> None:
         """Free the tables."""

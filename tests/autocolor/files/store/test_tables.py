@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import InputError, MissingInputError, UsageError, WriteError, open_tables
+from autocolor import InputError, MissingInputError, Phong, UsageError, WriteError, open_tables
 from autocolor.files.opening import read_scene
 from autocolor.files.store.tables import Tables, tables_of
 from tests.autocolor.files.store.stores import contents, is_equal, run, small_scene, small_store
@@ -135,6 +135,29 @@ def test_a_change_is_made_to_the_store_as_it_is_now(tmp_path: Path, tables: Tabl
     path.unlink()
     with pytest.raises(MissingInputError):
         open_tables(path)
+
+
+def test_own_normals_of_a_mesh_stay_until_its_polygons_are_changed(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Tables have no normals."""
+    path = tmp_path / "one.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 3 0\nvn 0 0 1\nvn 0 0.6 0.8\nf 1//1 2//2 3//1\n")
+    own = read_scene(path).mesh.own_normals
+    assert own is not None
+    with open_tables(path) as tables:
+        tables.change("UPDATE surfaces SET exponent = 7")
+        tables.change("UPDATE mesh SET crease_angle = 20")
+        scene = tables.scene()
+        kept = scene.mesh.own_normals
+        assert kept is not None
+        assert (kept.vectors[kept.numbers] == own.vectors[own.numbers]).all()
+        assert scene.mesh.crease_angle == 20
+        assert scene.surfaces[0].reflectance.model == Phong(7)
+        assert "normals" not in caplog.text
+        tables.change("UPDATE nodes SET z = 1 WHERE x = 1")
+        assert tables.scene().mesh.own_normals is None
+        assert "one: the normals of the changed mesh will be computed" in caplog.text
 
 
 ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT "
