@@ -89,8 +89,9 @@ def page(
     # Python does not convert thousands of digits.
     number = int(views) if views is not None and views.isdecimal() and len(views) < 10 else views
     picture = start.picture if isinstance(start, tuple) else None
-    renderings = 0 if picture is not None else len(views_of(scene, number, 1))
-    with progress(1 + renderings) as bar:
+    # `save_page` places the eyes of an orbit, which takes a while for a large mesh.
+    count = number if isinstance(number, int) else len(views_of(scene, number, 1))
+    with progress(1 + count * (picture is None)) as bar:
         save_page(
             output,
             scene,

@@ -78,12 +78,14 @@ def page_of_menu(
 
     Each page ends with the `last` rows. If there are several pages, the row before them turns to another.
     """
-    room, pages = MENU.height - lines_of(last), list[list[Widget]]([[]])
+    room, used, pages = MENU.height - lines_of(last), 0, list[list[Widget]]([[]])
     if lines_of(rows) > room:
         room -= ROW_LINES
     for row in rows:
-        if lines_of([*pages[-1], row]) > room:
+        used += row.row_lines
+        if used > room:
             pages.append([])
+            used = row.row_lines
         pages[-1].append(row)
     number = min(number, len(pages) - 1)
     if len(pages) > 1:
@@ -109,8 +111,8 @@ def paged(
     """
     pages = max(1, -(-len(things) // size))
     page = min(page, pages - 1)
-    turning = page_choice(help, page, pages, turn, label, within)
-    return things[page * size : (page + 1) * size], [turning] if pages > 1 else []
+    turning: list[Widget] = [page_choice(help, page, pages, turn, label, within)] if pages > 1 else []
+    return things[page * size : (page + 1) * size], turning
 
 
 # The list of a choice with many names: at the left of its row, in as many columns as it needs.

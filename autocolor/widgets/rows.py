@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final, NamedTuple
 
@@ -31,7 +31,8 @@ from autocolor.scene.kinds import (
 from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References
 from autocolor.widgets.bars import Bar, bar_within, rounded_to
 from autocolor.widgets.items import CHARACTER
-from autocolor.widgets.widget import MARGIN, Button, Choice, Entry, Place, Switch, Widget, page_choice
+from autocolor.widgets.menu import paged
+from autocolor.widgets.widget import MARGIN, Button, Choice, Entry, Place, Switch, Widget
 
 Put = Callable[[Mapping[str, object]], object]
 """Changes fields of the row, by name."""
@@ -283,12 +284,11 @@ def _list_rows(
     yield Switch(label, column.help, is_on=value is not None, flip=partial(put, begun))
     if value is None:
         return
-    names, pages = tables.of(table), -(-len(tables.of(table)) // NAMES_A_PAGE)
-    page = max(0, min(tables.pages.get(table, 0), pages - 1))
-    if pages > 1:
-        help = f"The page of the {len(names)} {table} that is shown below; {len(value)} are in the list."
-        yield replace(page_choice(help, page, pages, partial(tables.pages.__setitem__, table)), within=label)
-    for name in names[page * NAMES_A_PAGE : (page + 1) * NAMES_A_PAGE]:
+    names, turn = tables.of(table), partial(tables.pages.__setitem__, table)
+    help = f"The page of the {len(names)} {table} that is shown below; {len(value)} are in the list."
+    shown, turning = paged(names, NAMES_A_PAGE, tables.pages.get(table, 0), help, turn, within=label)
+    yield from turning
+    for name in shown:
         wanted = {*value} ^ {name}
         chosen = tuple(each for each in names if each in wanted)
         is_in = name in value

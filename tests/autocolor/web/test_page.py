@@ -99,6 +99,14 @@ def test_the_policy_allows_this_script_and_this_style_and_no_request() -> None:
     }
 
 
+def test_the_page_of_the_documents_has_the_present_script_and_style() -> None:
+    live = Elements((WEB.parents[1] / "docs" / "coupe.html").read_text("utf-8"))
+    (_, picture), (_, script) = live.all("script")
+    made = Elements(page_of(json.loads(picture)))
+    is_up_to_date = made.all("script")[1][1] == script and made.all("style") == live.all("style")
+    assert is_up_to_date, "run: autocolor page scenes/coupe --views 12 -o docs/coupe.html --force"
+
+
 @pytest.mark.parametrize("name", HOSTILE)
 def test_names_of_strangers_are_never_markup(name: str) -> None:
     mesh = sphere(8, 6)
