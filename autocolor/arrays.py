@@ -274,7 +274,8 @@ def power(cosines: RealArray[Real], exponent: float) -> RealArray[Real]:
     a maximum.
     """
     if exponent > SPARSE:
-        counts = cosines > 1 - NEGLIGIBLE / exponent
+        # Above an exponent of 1e9 or so, only a cosine of 1 counts.
+        counts = cosines >= 1 - NEGLIGIBLE / exponent
         count = np.count_nonzero(counts)
         if count <= FEW * len(cosines):
             few = np.zeros_like(cosines)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from autocolor import arrays
@@ -77,6 +77,7 @@ exponents = st.one_of(
 
 
 @given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=1), exponents)
+@example([1.0], 1e30)
 def test_every_cosine_is_raised_and_a_negative_one_counts_as_0(cosines: list[float], exponent: float) -> None:
     given_as = np.array(cosines, np.float32)
     powers = power(given_as, exponent)
